@@ -10,6 +10,7 @@
 #include "mpm/run/pair_groups.hpp"
 #include "mpm/run/prepare.hpp"
 #include "mpm/run/save.hpp"
+#include "mpm/run/surfaces.hpp"
 #include "mpm/run/time_step.hpp"
 #include "mpm/run/warnings.hpp"
 #include "translate.hpp"
@@ -95,6 +96,13 @@ void def_acting(SimulationClass& simulation) {
            }),
            nb::arg("name"), nb::arg("body"), nb::arg("kind"), nb::arg("value"),
            nb::arg("particles"), nb::arg("areas"), nb::arg("sizes"), nb::arg("arms"))
+      .def("add_surface",
+           of_any([](auto& s, int body, const std::vector<std::uint32_t>& particles,
+                     const Input& offsets, const Input& areas, double spacing) {
+             add_surface(s, body, {particles, span_of(offsets), span_of(areas), spacing});
+           }),
+           nb::arg("body"), nb::arg("particles"), nb::arg("offsets"), nb::arg("areas"),
+           nb::arg("spacing"))
       .def("add_body_force",
            of_any([](auto& s, const std::vector<int>& bodies,
                      const std::vector<Expression::Program>& value) {
@@ -109,12 +117,12 @@ void def_acting(SimulationClass& simulation) {
            of_any([](auto& s, const std::vector<int>& bodies, const TimeFunction& mass,
                      const TimeFunction& local) { add_damping(s, bodies, mass, local); }),
            nb::arg("bodies"), nb::arg("mass"), nb::arg("local"))
-      .def("set_friction", of_any([](auto& s, int a, int b, double mu) {
-             set_pair_law(s.domain, a, b, {mu, false, 0.0});
+      .def("set_friction", of_any([](auto& s, int a, int b, double mu, double restitution) {
+             set_pair_law(s.domain, a, b, {mu, false, 0.0, restitution});
            }),
-           nb::arg("body_a"), nb::arg("body_b"), nb::arg("mu"))
+           nb::arg("body_a"), nb::arg("body_b"), nb::arg("mu"), nb::arg("restitution") = 1.0)
       .def("bond",
-           of_any([](auto& s, int a, int b) { set_pair_law(s.domain, a, b, {0.0, true, 0.0}); }),
+           of_any([](auto& s, int a, int b) { set_pair_law(s.domain, a, b, {0.0, true, 0.0, 1.0}); }),
            nb::arg("body_a"), nb::arg("body_b"))
       .def("press", of_any([](auto& s, int a, int b, double depth) { press(s, a, b, depth); }),
            nb::arg("body_a"), nb::arg("body_b"), nb::arg("depth"))

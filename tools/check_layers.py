@@ -28,6 +28,7 @@ LAYERS = {
     "walls/walls.hpp": 3,
     "walls/face_impulses.hpp": 3,
     "grid": 4,
+    "surfaces/surfaces.hpp": 4,
     "particles": 5,
     "schedule": 6,
     "contact": 6,
@@ -38,10 +39,11 @@ LAYERS = {
     "rigid": 9,
     "walls": 9,
     "loads": 9,
+    "surfaces": 9,
     "device": 10,
     "run": 11,
 }
-TOGETHER = {"step", "rigid", "walls", "loads"}  # The stages: those of a subject in its folder.
+TOGETHER = {"step", "rigid", "walls", "loads", "surfaces"}  # The stages: those of a subject in its folder.
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"][^>"]+)[>"]')
 PYTHON = re.compile(r'^[<"](nanobind/|pybind11/|Python\.h|numpy/)')
 

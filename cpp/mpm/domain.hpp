@@ -15,7 +15,9 @@
 #include "mpm/materials/material_block.hpp"
 #include "mpm/parallel/threads.hpp"
 #include "mpm/particles/cell_lists.hpp"
+#include "mpm/particles/kept_spin.hpp"
 #include "mpm/rigid/rigid_motion.hpp"
+#include "mpm/surfaces/surfaces.hpp"
 #include "mpm/walls/face_impulses.hpp"
 
 namespace mpm {
@@ -37,6 +39,7 @@ struct Domain {
   std::vector<std::size_t> group_of;      // of each body, the number of its group among the groups
   ContactSettings contact_settings;
   Contact<D> contact;
+  Surfaces<D> surfaces;
   std::array<TimeFunction, 3> gravity_of_time{};    // [m/s^2]
   Vec<double, D> gravity = Vec<double, D>::zero();  // mean over the step being made [m/s^2]
   Threads threads;
@@ -74,6 +77,7 @@ struct Domain {
   std::vector<BodyForce<D>> body_forces;
   std::vector<Damping> dampings;           // of bodies' motion
   std::vector<Vec<double, D>> load_parts;  // scratch: force by patch and load [N]
+  std::vector<KeptSpin> kept_spins;        // of bodies on nodes of their own, by body
   std::vector<RigidMotion> rigid;          // one per entry of rigid_bodies
   std::vector<RigidMotion> rigid_before;
   std::vector<RigidSums> rigid_parts, rigid_sums;  // scratch: per patch, per rigid body
@@ -110,6 +114,10 @@ struct Domain {
   bool has_loads() const { return !loads.empty(); }
   bool has_body_forces() const { return !body_forces.empty(); }
   bool has_contact() const {
+    return may_meet() && !surfaces.meet;
+  }
+  /// The same at nodes, or where surfaces touch.
+  bool may_meet() const {
     return contact_settings.enabled && !contact_settings.bonded && bodies.size() > 1;
   }
   bool has_springs() const { return has_contact() && may_spring(contact_settings.response); }

@@ -15,7 +15,7 @@ from mpm3dpp.case.body import Body
 from mpm3dpp.case.case import Case, Material, load_case
 from mpm3dpp.case.file import locate_keys, parse
 from mpm3dpp.case.grid import Grid, GridBox
-from mpm3dpp.case.pairs import frictions_of
+from mpm3dpp.case.pairs import laws_of
 from mpm3dpp.case.parts import Contact, ContactPair, Output, Run
 from mpm3dpp.fill.build import build, warnings
 from mpm3dpp.io.folders import default_folder
@@ -91,9 +91,13 @@ def test_si_values_and_defaults() -> None:
     assert case.text == RINGS
 
 
-def test_frictions_of_pairs() -> None:
+def test_laws_of_pairs() -> None:
     # left-right by name; the others by material, though that entry stands first.
-    assert frictions_of(Case.from_text(RINGS)) == [(0, 1, 0.3), (0, 2, 0.2), (1, 2, 0.2)]
+    assert laws_of(Case.from_text(RINGS)) == [
+        (0, 1, 0.3, 1.0),
+        (0, 2, 0.2, 1.0),
+        (1, 2, 0.2, 1.0),
+    ]
 
 
 def test_frame_times() -> None:

@@ -49,10 +49,14 @@ def test_a_case_without_them_is_one() -> None:
     ("before", "after", "said"),
     [
         (GRID, f'{GRID}basis = "linear"\n', "needs gradients without jumps"),
-        (GRID, f'{GRID}box = {{ {BOX}, walls = "slip" }}\n', "walls of grid.box yet"),
+        (
+            GRID,
+            f'{GRID}box = {{ {BOX}, walls = "slip" }}\n',
+            'walls of grid.box that are "contact" alone',
+        ),
         (GRID, f"{GRID}outflow_box = {{ {BOX} }}\n", "grid.outflow_box"),
         (GRID, f"{GRID}coarsening = {{ tiles = 9, times = 1 }}\n", "grid.coarsening"),
-        ("enabled = false", "", "contact yet"),
+        ("enabled = false", "", "contact with b, which has another, yet"),
         ("enabled = false", "bonded = true", "bonded bodies yet"),
         (RUN, f'{RUN}settle = {{ longest = "1 ms" }}\n', "run.settle yet"),
         (MATTER, WATER, "material.m, which flows or breaks"),
@@ -75,8 +79,32 @@ def test_what_they_do_not_go_with(before: str, after: str, said: str) -> None:
         Case.from_text(text)
     messages = [str(told.value), *map(str, getattr(told.value, "others", []))]
     [about] = [m for m in messages if 'body.a.frame = "material"' in m]
-    assert re.search(rf"(does not go with|needs) .*{re.escape(said.removeprefix('needs '))}", about)
+    assert re.search(
+        rf"(does not go with|goes with|needs) .*{re.escape(said.removeprefix('needs '))}", about
+    )
     assert ";" in about  # and a remedy
+
+
+def test_restitution_is_for_them() -> None:
+    """Other bodies lose what their transfers take, and no more by it."""
+    text = CASE.replace(A, "").replace("enabled = false", "restitution = 0.5")
+    with pytest.raises(
+        CaseError, match=r'contact\.restitution is for bodies with frame = "material"'
+    ):
+        Case.from_text(text)
+    with pytest.raises(CaseError, match=r"contact\.restitution = 1\.5 must"):
+        Case.from_text(text.replace("0.5", "1.5"))
+
+
+def test_balls_of_few_cells_have_more_particles() -> None:
+    """Three a cell and direction, two where a case says it, or where their nodes lie in space."""
+    case = Case.from_text(CASE)
+    assert case.body["a"].particle_spacing(case.grid) == pytest.approx(1e-3 / 3)
+    assert case.body["b"].particle_spacing(case.grid) == pytest.approx(1e-3 / 2)
+    given = Case.from_text(CASE.replace(A, f"{A}particles_per_cell = 2\n"))
+    assert given.body["a"].particle_spacing(given.grid) == pytest.approx(1e-3 / 2)
+    large = Case.from_text(CASE.replace('radius = "4 mm"', 'radius = "9 mm"', 1))
+    assert large.body["a"].particle_spacing(large.grid) == pytest.approx(1e-3 / 2)
 
 
 def test_a_word_that_is_none() -> None:
@@ -96,7 +124,7 @@ def test_a_velocity_that_it_has_may_be_set() -> None:
         simulation.set_velocity("a", simulation.column("a", "velocity"))
     fallen = simulation.column("a", "velocity")[:, 1]
     assert fallen == pytest.approx(-9.81 * simulation.time, rel=1e-10)
-    assert simulation.column("b", "velocity")[:, 1] == pytest.approx(fallen, rel=1e-10)
+    assert simulation.column("b", "velocity")[:, 1] == pytest.approx(fallen[0], rel=1e-10)
 
 
 def test_another_one_keeps_its_velocity_where_one_is_set() -> None:

@@ -22,7 +22,7 @@ from mpm3dpp import (
     run_case,
 )
 from mpm3dpp.base.neighbours import overlapping_boxes
-from mpm3dpp.case.pairs import frictions_of
+from mpm3dpp.case.pairs import laws_of
 from mpm3dpp.fill.build import build
 from mpm3dpp.grains.packing import ball_volume
 from mpm3dpp.io import read_history
@@ -228,8 +228,9 @@ friction = 0.4
     case = grains(more, more=pairs)
     # The plate is body 0, sand 1 to 6, dust 7 and 8; bodies go before materials.
     assert case.first_bodies() == {"plate": 0, "sand": 1, "dust": 7}
-    expected = [(0, 1, 0.2), (0, 7, 0.2), (1, 1, 0.5), (1, 7, 0.4), (7, 7, 0.4)]
-    assert frictions_of(case) == expected
+    frictions = [(0, 1, 0.2), (0, 7, 0.2), (1, 1, 0.5), (1, 7, 0.4), (7, 7, 0.4)]
+    expected = [(*one, 1.0) for one in frictions]
+    assert laws_of(case) == expected
     Simulation(case, threads=1)
 
 

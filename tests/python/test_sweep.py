@@ -13,7 +13,7 @@ from commands import CASE, mpm3dpp, one_sentence, write
 from mpm3dpp import Case, load_case
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.case.changes import value_of, values_of
-from mpm3dpp.case.pairs import frictions_of
+from mpm3dpp.case.pairs import laws_of
 from mpm3dpp.io import read_manifest
 from mpm3dpp.sweep import runs
 from mpm3dpp.sweep.numbers import unit_of
@@ -92,7 +92,7 @@ def test_the_last_change_counts_and_values_are_copied() -> None:
     case = case.with_({"contact.friction": 0.3})
     assert case.contact.friction == 0.3 and table == {"friction": 0.2}
     changed = Case.from_text(CONTACT).with_({"contact.pair[0].friction": 0.0})
-    assert frictions_of(changed)[-1][2] == 0
+    assert laws_of(changed)[-1][2] == 0
 
 
 def test_values_of_the_command_line() -> None:

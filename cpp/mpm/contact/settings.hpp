@@ -14,9 +14,10 @@ namespace mpm {
 
 /// What is chosen for the bodies of two groups.
 struct PairLaw {
-  double friction = 0.0;  // coefficient of friction
-  bool bonded = false;    // they stick together wherever they meet
-  double pressed = 0.0;   // depth to which they push each other from the start [m]
+  double friction = 0.0;     // coefficient of friction
+  bool bonded = false;       // they stick together wherever they meet
+  double pressed = 0.0;      // depth to which they push each other from the start [m]
+  double restitution = 1.0;  // speed of parting over that of approach
 };
 
 struct ContactSettings {
@@ -25,7 +26,7 @@ struct ContactSettings {
   Detection detection = Detections::id_of<GapDetection>();
   NormalRule normal = NormalRules::id_of<PlaneNormal>();
   Response response = Response::springs;
-  double friction = 0.0;
+  double friction = 0.0, restitution = 1.0;
   double gap_distance = 0.0;  // D of eq. (5)
   double normal_refresh_distance =
       0.0;  // beyond a quarter a pair found apart could meet along another normal
@@ -52,6 +53,12 @@ struct ContactSettings {
               "the same, but for liquids, whose approach they stop"},
       Setting{"friction", &Self::friction, "Coulomb coefficient of all pairs not listed in `pair`",
               Rule::not_negative},
+      Setting{
+          "restitution", &Self::restitution,
+          "of surfaces that touch each other by contact points (frame = \"material\"): the speed "
+          "with which two bodies part over that with which they came, of those that are elastic; "
+          "below 1 a bed of grains comes to rest",
+          Rule::share},
       Setting{"gap_distance", &Self::gap_distance, "bodies closer than this touch [m]",
               Rule::not_negative, "m"},
       Setting{"normal_refresh_distance",
@@ -88,7 +95,9 @@ inline PairLaw law_of(const ContactSettings& settings, int a, int b) {
   const auto& list = settings.pair_laws;
   const auto at =
       std::ranges::lower_bound(list, key, {}, &std::pair<std::uint64_t, PairLaw>::first);
-  return at != list.end() && at->first == key ? at->second : PairLaw{settings.friction, false, 0.0};
+  return at != list.end() && at->first == key
+             ? at->second
+             : PairLaw{settings.friction, false, 0.0, settings.restitution};
 }
 
 /// Are any pairs bonded?

@@ -49,6 +49,11 @@
 
 namespace mpm {
 
+/// In the springs of contact between surfaces, of normal forces and of friction [J].
+struct StoredInSurfaces {
+  double push = 0.0, rub = 0.0;
+};
+
 struct Ledger {
   double kinetic = 0.0, internal = 0.0, plastic = 0.0, viscous = 0.0, friction = 0.0, contact = 0.0,
          springs = 0.0, external = 0.0, absorbed = 0.0, damped = 0.0, eroded = 0.0, left = 0.0,
@@ -67,6 +72,7 @@ struct Ledger {
   double motion_work = 0.0;          // the part of external that prescribed motions have done [J]
   std::array<double, 3> motion_impulse{};  // that they have given [N s]
   double kept_ahead = 0.0;                 // see PatchSums; of the last step, a part of kinetic [J]
+  StoredInSurfaces in_surfaces;            // of springs [J]
   double prescribed_kinetic = 0.0;         // of the bodies with prescribed motion [J]
   std::array<double, 3> prescribed_momentum{};  // [kg m/s]
   AngularLedger angular;
@@ -87,9 +93,10 @@ struct Ledger {
   }
 
   /// Velocities have been set anew between two steps.
-  void set_kinetic(double now) {
-    time_integration += kept_ahead;
-    kept_ahead = 0.0;
+  /// `ahead`: the part of it that nodes in bodies have not (PatchSums::kept_ahead).
+  void set_kinetic(double now, double ahead = 0.0) {
+    time_integration += kept_ahead - ahead;
+    kept_ahead = ahead;
     kinetic = now;
   }
 
@@ -117,8 +124,8 @@ struct Ledger {
   /// (USF), `affine` if the transfer is.
   template <int D>
   void add(const std::vector<PatchSums<D>>& patches, const ContactSums& contacts,
-           const RemovedTotal& by_erosion, const RemovedTotal& out_of_region, bool forces_follow,
-           bool affine, Comm& comm) {
+           const StoredInSurfaces& now, const RemovedTotal& by_erosion,
+           const RemovedTotal& out_of_region, bool forces_follow, bool affine, Comm& comm) {
     const PatchSums<D> s = total_of(patches, comm);
     const double motion = s.prescribed.kinetic - prescribed_kinetic - s.prescribed.work;
     prescribed_kinetic = s.prescribed.kinetic;
@@ -137,6 +144,8 @@ struct Ledger {
     kinetic = s.kinetic - s.carried + s.kept_ahead;
     time_integration -= s.kept_ahead - kept_ahead;
     kept_ahead = s.kept_ahead;
+    const double pushed = in_surfaces.push - now.push - s.surface_push,
+                 rubbed = in_surfaces.rub - now.rub - s.surface_rub;
     for (std::size_t a = 0; a < D; ++a) momentum[a] = s.momentum[a];
     internal += s.stress.internal + s.returned;
     plastic += s.stress.plastic;
@@ -144,10 +153,13 @@ struct Ledger {
     damped_stiffness += s.stress.damped;
     bounded += s.stress.bounded;
     energy_floor += s.stress.energy_floor;
-    friction += contacts.friction - (s.wall_friction.first + s.wall_friction.second);
-    const double stored = contacts.stored + s.wall_stored;
-    contact += contacts.energy - (s.wall_push.first + s.wall_push.second) - (stored - springs);
-    springs = stored;
+    friction += contacts.friction - (s.wall_friction.first + s.wall_friction.second) + rubbed;
+    const double in_nodes = springs - in_surfaces.push - in_surfaces.rub,
+                 stored = contacts.stored + s.wall_stored;
+    contact +=
+        contacts.energy - (s.wall_push.first + s.wall_push.second) - (stored - in_nodes) + pushed;
+    springs = stored + now.push + now.rub;
+    in_surfaces = now;
     load_work += s.load_first + s.load_second;
     external += s.gravity_first + s.gravity_second + s.load_first + s.load_second + motion;
     absorbed -= s.dashpot_first + s.dashpot_second;
@@ -162,8 +174,8 @@ struct Ledger {
     // (6)-(7), and the second order: what the energies of free particles should have changed by.
     if (affine)
       transferred += s.force_work + s.gravity_first + s.load_first + s.dashpot_first +
-                     s.wall_push.first + s.wall_friction.first + s.damping_first + s.second_order -
-                     s.prescribed.work -
+                     s.wall_push.first + s.wall_friction.first + s.damping_first + s.second_order +
+                     s.surface_push + s.surface_rub - s.prescribed.work -
                      (contacts.energy + contacts.friction_first + contacts.force_work);
     time_integration += s.made_rigid;
     time_integration -= s.stress.internal + s.stress.plastic + s.stress.viscous + s.stress.damped +

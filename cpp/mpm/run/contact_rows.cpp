@@ -87,10 +87,34 @@ void add_row(std::span<const NodeContact> nodes, double time_step, std::vector<d
   rows.push_back(friction_impulse > 0.0 ? friction_work / friction_impulse : 0.0);
 }
 
+/// The row of bodies whose surfaces touch.
+template <int D>
+void add_row(const ActingBetween<D>& pair, double time_step, std::vector<double>& rows) {
+  const double push = norm(pair.push), rub = norm(pair.on_first - pair.push);
+  if (is_face(pair.b) || !(push > 0.0)) return;
+  const auto add = [&](const Vec<double, D>& vector) {
+    const Vector3 v = in_space<D>(vector);
+    rows.insert(rows.end(), v.c, v.c + 3);
+  };
+  rows.push_back(pair.a);
+  rows.push_back(pair.b);
+  add((1.0 / pair.size) * pair.middle);
+  add((-1.0 / push) * pair.push);
+  rows.push_back(-pair.overlap);
+  add(pair.on_first);
+  rows.push_back(rub > 0.0 && time_step > 0.0 ? pair.rubbed / (rub * time_step) : 0.0);
+}
+
 }  // namespace
 
 template <int D>
 std::vector<double> contact_rows(Domain<D>& domain) {
+  if (domain.surfaces.meet) {
+    std::vector<double> rows;
+    for (const ActingBetween<D>& pair : domain.surfaces.between)
+      add_row(pair, domain.time_step, rows);
+    return rows;
+  }
   if (!domain.has_contact() || domain.step == 0) return {};
   std::vector<NodeContact> found = contacts_here(domain);
   add_those_of_others(*domain.grid.partition.comm, found);

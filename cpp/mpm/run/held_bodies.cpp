@@ -140,7 +140,7 @@ void start_moving(Simulation<D>& simulation) {
     // They are where they were, so that the lists of the last step are theirs.
     start_affine(domain, meant);
   }
-  ledger.set_kinetic(kinetic_energy(domain));
+  ledger.set_kinetic(kinetic_energy(domain), -kinetic_excess(domain.kept_spins));
   ledger.momentum = momentum(domain);
   ledger.motion_work += ledger.kinetic - kinetic;
   ledger.external += ledger.kinetic - kinetic;

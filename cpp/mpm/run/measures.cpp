@@ -21,8 +21,9 @@ double kinetic_energy(Domain<D>& domain) {
   ExactSum total;
   for (const Patch<D>& patch : domain.grid.patches) {
     if (patch.keeps) {
+      const OfTurning less = of_turning(domain.kept_spins, patch.body);
       for_each_kept_node(domain.grid, patch, [&](double m, const Vector3&, const Vector3& v) {
-        total.add(0.5 * m * dot(v, v));
+        total.add(m * (0.5 * dot(v, v) - less.kinetic));
       });
       continue;
     }

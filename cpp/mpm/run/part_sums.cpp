@@ -18,8 +18,11 @@ struct MovingMass {
 template <int D, class F>
 void for_each_mass(Domain<D>& domain, const Patch<D>& patch, SumsOf of, F&& f) {
   if (patch.keeps && of == SumsOf::kept_nodes) {
+    // As the body turns, not its nodes.
+    const OfTurning less = of_turning(domain.kept_spins, patch.body);
     for_each_kept_node(domain.grid, patch, [&](double m, const Vector3& x, const Vector3& v) {
-      f(MovingMass{m, 0.5 * m * dot(v, v), x, v});
+      f(MovingMass{m, m * (0.5 * dot(v, v) - less.kinetic), x, v, -m * less.momentum,
+                   -m * less.inertia});
     });
     return;
   }

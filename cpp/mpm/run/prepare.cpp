@@ -14,6 +14,7 @@
 #include "mpm/run/start_affine.hpp"
 #include "mpm/run/start_contact.hpp"
 #include "mpm/run/start_in_body.hpp"
+#include "mpm/run/surfaces.hpp"
 #include "mpm/run/time_step.hpp"
 #include "mpm/run/watch.hpp"
 
@@ -43,6 +44,7 @@ void start_ledger(Domain<D>& domain) {
   Ledger& ledger = domain.ledger;
   ledger.kinetic = kinetic_energy(domain);
   ledger.internal = initial_internal_energy(domain);
+  ledger.kept_ahead = -kinetic_excess(domain.kept_spins);
   ledger.start = ledger.kinetic + ledger.internal;
   ledger.momentum = momentum(domain);
   const AngularTotals angular = angular_totals(part_sums(domain));
@@ -74,6 +76,7 @@ void prepare(Simulation<D>& simulation) {
   check_setting(!domain.bodies.empty(), "there is no body");
   check_bodies(domain);
   simulation.phase = Phase::broken;  // until all is done
+  domain.surfaces.meet = domain.may_meet() && !domain.surfaces.given.empty();
   domain.grid.partition.shares_tiles = domain.has_contact();
   add_contact_columns(domain);
   find_held_bodies(simulation);
@@ -96,6 +99,7 @@ void prepare(Simulation<D>& simulation) {
   start_affine(domain);
   start_in_body(domain);
   start_contact(domain);
+  start_surfaces(domain);
   probe_speeds(domain);
   const std::string problem = choose_time_step(simulation);
   check_setting(problem.empty(), problem.c_str());

@@ -5,6 +5,7 @@
 #include "mpm/grid/blocks.hpp"
 #include "mpm/run/check_restored.hpp"
 #include "mpm/run/held_bodies.hpp"
+#include "mpm/run/surfaces.hpp"
 #include "mpm/run/time_step.hpp"
 
 namespace mpm {
@@ -12,7 +13,7 @@ namespace {
 
 constexpr const char* other_version = "it was made by another version of mpm3dpp";
 constexpr const char* other_case = "it was made from another case";
-constexpr std::int64_t format = 17;  // raised whenever exchange() or what a value means changes
+constexpr std::int64_t format = 18;  // raised whenever exchange() or what a value means changes
 
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {
@@ -102,6 +103,12 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
   for (SurfaceLoad<D>& load : domain.loads) stream(load.mean, load.force, load.impulse);
   if (stream.restores()) rebuild(domain, std::move(bodies), stream);
   exchange_kept_nodes(domain, stream);
+  stream.array(std::span(domain.kept_spins));
+  exchange_surfaces(domain, stream);
+  if (domain.surfaces.meet) {
+    domain.contact.records.exchange(stream);
+    if (stream.restores()) domain.contact.records.check_restored(domain.bodies.size(), true);
+  }
   if (domain.has_contact())
     exchange_contact(domain.contact, stream, domain.bodies.size(), domain.grid.partition);
   stream(domain.time, domain.time_step, domain.step_before, domain.step, domain.gravity);

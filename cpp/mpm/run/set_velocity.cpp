@@ -44,7 +44,7 @@ void set_velocity(Simulation<D>& simulation, int number, std::span<const double>
   find_kept_velocities(domain, meant);
   Ledger& ledger = domain.ledger;
   ledger.external += kinetic_energy(domain) - before;
-  ledger.set_kinetic(kinetic_energy(domain));
+  ledger.set_kinetic(kinetic_energy(domain), -kinetic_excess(domain.kept_spins));
   ledger.momentum = momentum(domain);
   ledger.angular.start += angular_totals(part_sums(domain)).all - turned;
   simulation.watch.steps.start_from(ledger.made(), ledger.load_work);

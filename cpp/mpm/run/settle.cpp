@@ -29,7 +29,7 @@ void stop_all(Domain<D>& domain) {
   project_rigid_velocities(domain);
   stop_kept_nodes(domain);
   Ledger& ledger = domain.ledger;
-  ledger.set_kinetic(kinetic_energy(domain));
+  ledger.set_kinetic(kinetic_energy(domain), -kinetic_excess(domain.kept_spins));
   ledger.damped += before - ledger.kinetic;
   ledger.momentum = momentum(domain);
   ledger.angular.impulses.damping += angular_totals(part_sums(domain)).all - turned;

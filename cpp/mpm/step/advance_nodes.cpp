@@ -4,6 +4,7 @@
 #include "mpm/step/kept_nodes.hpp"
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stage_functions.hpp"
+#include "mpm/surfaces/parts.hpp"
 #include "mpm/walls/absorb.hpp"
 #include "mpm/walls/reactions.hpp"
 #include "mpm/walls/touch.hpp"
@@ -239,6 +240,7 @@ void advance_nodes(Domain<D>& domain) {
     sums.wall_friction = friction;
     sums.gravity_first = dt * (done.gravity_first - weight_first);
     sums.gravity_second = 0.5 * halves * dt * (done.gravity_second - weight_second);
+    if (patch.keeps) add_work_of_surfaces(domain, p);
     if (patch.keeps) count_kept_nodes(domain, move_kept_nodes(domain, block, own, sums), sums);
   });
 }

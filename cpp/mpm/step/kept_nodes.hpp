@@ -84,8 +84,8 @@ void count_kept_nodes(const Domain<D>& domain, double gained, PatchSums<D>& sums
   const double first = sums.gravity_first + sums.load_first + sums.damping_first;
   sums.second_order = sums.gravity_second + sums.load_second + sums.damping_second;
   const double external = first + sums.second_order;
-  sums.force_work = gained - external;
-  sums.kept_ahead = 0.5 * external;
+  sums.force_work = gained - external - sums.surface_push - sums.surface_rub;
+  sums.kept_ahead += 0.5 * external;
   // Affine transfers count all that kinetic energy loses, and what forces have given against it.
   if (is_affine(domain.transfer)) sums.transferred = -gained;
 }

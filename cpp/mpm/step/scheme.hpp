@@ -41,11 +41,13 @@ struct Schemes {
       S::map_forces,
       S::map_volumes,
       S::load_surfaces,
+      S::load_by_surfaces,
       S::add_body_forces,
       S::place_dashpots,
       S::place_springs,
       S::fold_forces,
       S::exchange_forces,
+      S::turn_in_body,
       S::absorb,
       S::touch,
       S::contact_forces,
@@ -54,10 +56,12 @@ struct Schemes {
       S::update_in_body,
       S::release,
       S::advance_particles,
+      S::push_rigid,
       S::hold_rigid,
       S::restore,
       S::move_particles,
       S::move_rigid,
+      S::touch_surfaces,
       S::record_contacts,
       S::template sum_energies<true>,
   };
@@ -76,11 +80,13 @@ struct Schemes {
       S::map_forces,
       S::map_volumes,
       S::load_surfaces,
+      S::load_by_surfaces,
       S::add_body_forces,
       S::place_dashpots,
       S::place_springs,
       S::fold_forces,
       S::exchange_forces,
+      S::turn_in_body,
       S::absorb,
       S::touch,
       S::contact_forces,
@@ -89,11 +95,13 @@ struct Schemes {
       S::update_in_body,
       S::release,
       S::advance_particles,
+      S::push_rigid,
       S::hold_rigid,
       S::restore,
       S::update_last,
       S::move_particles,
       S::move_rigid,
+      S::touch_surfaces,
       S::record_contacts,
       S::template sum_energies<false>,
   };
@@ -113,11 +121,13 @@ struct Schemes {
       S::map_forces,
       S::map_volumes,
       S::load_surfaces,
+      S::load_by_surfaces,
       S::add_body_forces,
       S::place_dashpots,
       S::place_springs,
       S::fold_forces,
       S::exchange_forces,
+      S::turn_in_body,
       S::absorb,
       S::touch,
       S::contact_forces,
@@ -126,6 +136,7 @@ struct Schemes {
       S::update_in_body,
       S::release,
       S::advance_particles,
+      S::push_rigid,
       S::hold_rigid,
       S::remap_momentum,
       S::remap_rigid,
@@ -137,6 +148,7 @@ struct Schemes {
       S::update_remapped,
       S::move_particles,
       S::move_rigid,
+      S::touch_surfaces,
       S::record_contacts,
       S::template sum_energies<false>,
   };
@@ -155,7 +167,11 @@ struct Schemes {
     StageList<D> rest = list;
     if (extra != Extra::filter) rest = without(rest, S::filter);
     if (extra != Extra::release) rest = without(without(rest, S::release), S::restore);
-    return in_body ? rest : without(rest, S::update_in_body);
+    if (in_body) return rest;
+    for (const Stage<D>& stage : {S::load_by_surfaces, S::turn_in_body, S::update_in_body,
+                                  S::push_rigid, S::touch_surfaces})
+      rest = without(rest, stage);
+    return rest;
   }
   using ByExtra = std::array<StageList<D>, 3>;
   using Lists = std::array<ByExtra, 2>;  // without and with such bodies

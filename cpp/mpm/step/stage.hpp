@@ -50,6 +50,8 @@ struct Data {
     flowing = 1ull << 31,
     kept_nodes = 1ull << 32,   // what nodes that lie in bodies keep: their motion
     deformation = 1ull << 33,  // of the particles of these bodies
+    surfaces = 1ull << 34,     // contact points, and what acts on them
+    kept_spins = 1ull << 35,   // how these bodies turn
   };
 };
 /// Their names, in the order of the bits.
@@ -60,7 +62,8 @@ inline constexpr auto data_names = std::to_array<std::string_view>(
      "node remapped",   "node dashpots",  "contacts",      "patch sums",      "records",
      "energies",        "left cells",     "body force",    "unseen velocity", "impulses",
      "mapped impulses", "force pressure", "node springs",  "affine part",     "carried sums",
-     "node volumes",    "flowing",        "kept nodes",    "deformation"});
+     "node volumes",    "flowing",        "kept nodes",    "deformation",     "surfaces",
+     "kept spins"});
 
 /// The data and what shares its place (layout/node_records.hpp): who writes one takes the others.
 constexpr std::uint64_t places_of(std::uint64_t data) {
@@ -92,7 +95,7 @@ constexpr bool independent(const Stage<D>& a, const Stage<D>& b) {
   return !(taken_by_a & b.reads) && !(a.reads & taken_by_b) && !(taken_by_a & b.writes);
 }
 
-inline constexpr std::size_t most_stages = 40;  // of a list
+inline constexpr std::size_t most_stages = 48;  // of a list
 
 template <int D>
 struct StageList {

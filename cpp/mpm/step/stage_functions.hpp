@@ -59,6 +59,20 @@ void find_velocities(Domain<D>& domain);
 template <int D>
 void find_remapped(Domain<D>& domain);
 
+/// Forces by which bodies on nodes of their own turn as their particles would
+/// (particles/kept_spin.hpp).
+template <int D>
+void turn_in_body(Domain<D>& domain);
+
+/// What contact points of surfaces do to each other at the end of a step, and give to their nodes
+/// in the next (surfaces/surfaces.hpp).
+template <int D>
+void touch_surfaces(Domain<D>& domain);
+template <int D>
+void load_by_surfaces(Domain<D>& domain);
+template <int D>
+void push_rigid_by_surfaces(Domain<D>& domain);
+
 /// Contact of bodies: overlapped nodes, normals, gaps, eq. (5); approaching momentum removed, eqs.
 /// (4), (6)-(7).
 template <int D>

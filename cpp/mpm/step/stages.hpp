@@ -88,6 +88,9 @@ struct Stages : Data {
       "load surfaces", mpm::load_surfaces<D>,
       lists | position | load_pieces | node_force | impulses | patch_sums,
       load_pieces | node_force | impulses | patch_sums};
+  static constexpr Row load_by_surfaces{"forces of surfaces", mpm::load_by_surfaces<D>,
+                                        lists | surfaces | node_force | impulses | patch_sums,
+                                        surfaces | node_force | impulses | patch_sums};
   static constexpr Row add_body_forces{
       "body forces",
       mpm::add_body_forces<D>,
@@ -121,6 +124,11 @@ struct Stages : Data {
                                        false,
                                        false,
                                        mpm::start_forces<D>};
+  // When all forces are there, at nodes that have them from all patches.
+  static constexpr Row turn_in_body{
+      "turn bodies on nodes of their own", mpm::turn_in_body<D>,
+      lists | node_force | kept_nodes | kept_spins | surfaces | patch_sums,
+      node_force | kept_spins | patch_sums};
   // After the exchange, as the force of a dashpot is not linear in C_i and m_i; before contact,
   // which balances all other forces of two bodies, eq. (13).
   static constexpr Row absorb{"absorb at walls", mpm::absorb_at_walls<D>,
@@ -137,8 +145,9 @@ struct Stages : Data {
   // It reads pieces and body forces for the work of these, once increments are known.
   static constexpr Row advance_nodes{
       "advance nodes", mpm::advance_nodes<D>,
-      lists | position | mass | load_pieces | body_force | node_mass | node_velocity | node_force |
-          node_dashpots | node_springs | node_volumes | kept_nodes | patch_sums | impulses,
+      lists | position | mass | load_pieces | body_force | surfaces | node_mass | node_velocity |
+          node_force | node_dashpots | node_springs | node_volumes | kept_nodes | patch_sums |
+          impulses,
       node_velocity | node_increments | node_volumes | kept_nodes | patch_sums | impulses};
   // Of bodies on nodes of their own alone, which hold all there is of their motion.
   static constexpr Row update_in_body{
@@ -166,6 +175,8 @@ struct Stages : Data {
                                          velocity | affine | flowing | rigid_velocity | patch_sums,
                                          true,
                                          true};
+  static constexpr Row push_rigid{"push rigid bodies by surfaces", mpm::push_rigid_by_surfaces<D>,
+                                  lists | of_rigid | surfaces, rigid_velocity};
   // Before anything takes their velocities: the remap in MUSL, the end of the step in the others.
   static constexpr Row hold_rigid{"project rigid velocities", mpm::project_rigid_velocities<D>,
                                   lists | of_rigid | patch_sums | impulses,
@@ -201,6 +212,11 @@ struct Stages : Data {
   static constexpr Row move_rigid{"move rigid bodies", mpm::move_rigid_bodies<D>,
                                   lists | of_rigid | patch_sums,
                                   of_rigid | left_cells | patch_sums};
+  // Where bodies are by now, with the velocities that have brought them there.
+  static constexpr Row touch_surfaces{"touch surfaces", mpm::touch_surfaces<D>,
+                                      lists | of_particles | of_rigid | deformation | kept_nodes |
+                                          kept_spins | surfaces | records | patch_sums,
+                                      surfaces | records | patch_sums};
   static constexpr Row record_contacts{"record contacts", mpm::record_contacts<D>,
                                        node_mass | contacts | records, records};
   template <bool forces_follow>

@@ -57,8 +57,9 @@ void sum_energies(Domain<D>& domain) {
     eroded = total_of(domain.eroded, comm);
     outflow = total_of(domain.outflow, comm);
   }
-  domain.ledger.add(domain.sums, domain.contact_sums, eroded, outflow, forces_follow,
-                    is_affine(domain.transfer), comm);
+  domain.ledger.add(domain.sums, domain.contact_sums,
+                    {domain.surfaces.stored_push, domain.surfaces.stored_rub}, eroded, outflow,
+                    forces_follow, is_affine(domain.transfer), comm);
   domain.ledger.angular.impulses.walls += domain.rigid_at_walls;
   add_part_energies(domain);
   add_faces(domain, comm.rank() == 0);

@@ -19,6 +19,12 @@ struct FaceImpulses {
     for (int face = 0; face < 2 * D; ++face)
       if (faces >> face & 1u) of[face / 2][face % 2][component] += impulse / count;
   }
+  /// Those of other forces over a time.
+  void add(const FaceImpulses& forces, double time) {
+    for (int axis = 0; axis < D; ++axis)
+      for (int side = 0; side < 2; ++side)
+        for (int a = 0; a < D; ++a) of[axis][side][a] += time * forces.of[axis][side][a];
+  }
   /// f(number) for all, in one order: 2 D D.
   template <class F>
   MPM_HD void for_each(F&& f) {

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 from pydantic import model_validator
@@ -10,12 +11,13 @@ from pydantic import model_validator
 from mpm3dpp.base.damping import Damping
 from mpm3dpp.base.errors import violation
 from mpm3dpp.base.expression import ForceField, SpinField, TotalForce, VelocityField
-from mpm3dpp.base.frames import FRAMES, UPDATED
+from mpm3dpp.base.frames import ALONG, FRAMES, UPDATED, particles_along
 from mpm3dpp.base.model import CaseModel, Choice, Count, Flag, Text
 from mpm3dpp.base.units import PositiveLength
 from mpm3dpp.shapes.base import MaybeShape
 from mpm3dpp.shapes.cut_round import was_round
 from mpm3dpp.shapes.faces import FACES, has_faces
+from mpm3dpp.shapes.primitives import Disc, Sphere
 from mpm3dpp.shapes.shells import (
     LATTICE,
     LEAVE_OUT,
@@ -24,6 +26,7 @@ from mpm3dpp.shapes.shells import (
     default_way,
     no_shells,
     takes_shells,
+    unmoved,
 )
 
 from .grid import Grid
@@ -41,7 +44,8 @@ class Body(CaseModel):
         particles: a CSV file beside the case file with the columns x, y, z and, if it likes,
             volume and vx, vy, vz, in SI units, or `{ file = "points.csv", unit = "mm" }`, the unit
             of its lengths (in Python: `mpm3dpp.Particles`); in place of `shape`.
-        particles_per_cell: particles per cell along each direction; default 2.
+        particles_per_cell: particles per cell along each direction; default 2, and 3 of a disc or a
+            ball of less than 8 cells a radius whose frame is "material", as cut cells vibrate.
         spacing: distance of the particles [m], in place of `particles_per_cell`.
         fill: how particles fill the shape: "shells", circles and spheres about the middle, the
             default for a disc, ring, sphere, cylinder or tube, also moved, turned, bored or cut
@@ -62,7 +66,7 @@ class Body(CaseModel):
             None for nothing.
         frame: where its nodes lie: in space, "updated", where any flow is possible; or in the body,
             "material", where they keep their motion and nothing of it is lost, as of elastic bodies
-            of few cells that vibrate, spin or hit (no fluids, failure, contact or walls yet).
+            of few cells that vibrate, spin, hit or roll (no fluids, failure or loads yet).
         motion: "fixed", or a motion that the body has whatever acts on it; it does not deform
             then; None for a body that is free to move.
     """
@@ -93,8 +97,8 @@ class Body(CaseModel):
             if getattr(self, given) is not None:
                 rule = "must not be given together with particles that have volumes"
                 raise violation(rule, "remove it", path=(given,))
-        elif getattr(self, given) is None:
-            self.__dict__["particles_per_cell"] = 2
+        elif getattr(self, given) is None and self.frame == UPDATED:
+            self.__dict__["particles_per_cell"] = ALONG
         return self
 
     @model_validator(mode="after")
@@ -146,4 +150,12 @@ class Body(CaseModel):
             return edge
         if self.spacing is not None:
             return self.spacing
-        return grid.cell_size / (self.particles_per_cell or 2)
+        along = self.particles_per_cell
+        return grid.cell_size / (
+            along or particles_along(self.frame, self._radius() / grid.cell_size)
+        )
+
+    def _radius(self) -> float:
+        """Return the radius of a disc or a ball [m]; infinity of others."""
+        shape = None if self.shape is None else unmoved(self.shape)
+        return shape.radius if type(shape) in (Disc, Sphere) else math.inf

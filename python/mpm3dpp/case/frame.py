@@ -12,6 +12,8 @@ from mpm3dpp import _core
 from mpm3dpp.base.errors import violation
 from mpm3dpp.base.frames import MATERIAL, UPDATED
 
+from .grid import CONTACT
+
 if TYPE_CHECKING:
     from .case import Case
 
@@ -27,11 +29,25 @@ def check_frames(case: Case) -> Iterator[PydanticCustomError]:
     Yields:
         The violations, with their paths in the case.
     """
-    for name in in_body(case):
+    own = in_body(case)
+    if not own and (word := _restitution(case)):
+        rule = f'is for bodies with frame = "{MATERIAL}", and there is none'
+        yield violation(rule, "give it to bodies, or leave restitution out", path=word)
+    for name in own:
         for rule, remedy in (*_of_body(case, name), *_of_case(case, name)):
             path = (*case.part_path(name), "frame")
             yield violation(rule, remedy, value=MATERIAL, path=path)
             break  # The next may follow from it.
+
+
+def _restitution(case: Case) -> tuple[str | int, ...]:
+    """Return the key of a restitution below 1."""
+    if case.contact.restitution < 1.0:
+        return "contact", "restitution"
+    for k, pair in enumerate(case.contact.pair):
+        if pair.restitution is not None and pair.restitution < 1.0:
+            return "contact", "pair", k, "restitution"
+    return ()
 
 
 def _of_body(case: Case, name: str) -> Iterator[tuple[str, str]]:
@@ -62,13 +78,15 @@ def _of_case(case: Case, name: str) -> Iterator[tuple[str, str]]:
     updated = f'give frame = "{UPDATED}"'
     if case.grid.basis == "linear":
         yield "needs gradients without jumps", 'give grid.basis = "quadratic_bspline"'
-    if case.contact_enabled:
-        rule = "does not go with contact yet"
-        yield rule, f"give contact.enabled = false where bodies do not meet, or {updated[5:]}"
+    others = [one for one in case.parts() if not case.is_rigid(one) and one not in in_body(case)]
+    if case.contact_enabled and others:
+        rule = f"does not go with contact with {others[0]}, which has another, yet"
+        yield rule, f'give all frame = "{MATERIAL}", contact.enabled = false, or {updated[5:]}'
     if case.contact.bonded and case.body_count > 1:
         yield "does not go with bonded bodies yet", updated
-    if case.grid.box is not None and any(w != "free" for w in case.grid.walls):
-        yield "does not go with walls of grid.box yet", f"leave the box out, or {updated}"
+    if any(wall not in ("free", CONTACT) for wall in case.grid.walls):
+        rule = f'goes with walls of grid.box that are "{CONTACT}" alone, so far'
+        yield rule, f'give walls "{CONTACT}", or {updated}'
     if case.grid.outflow_box is not None:
         yield "does not go with grid.outflow_box", f"leave it out, or {updated}"
     if case.grid.coarsening is not None:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def listed_pairs(case: Case) -> dict[tuple[int, int], ContactPair]:
-    """Return what holds for pairs of bodies, by their numbers, a <= b; see `frictions_of`."""
+    """Return what holds for pairs of bodies, by their numbers, a <= b; see `laws_of`."""
     parts, firsts = case.parts(), case.first_bodies()
     found = {}
     for pair in sorted(case.contact.pair, key=lambda p: p.bodies is not None):
@@ -32,18 +32,30 @@ def listed_pairs(case: Case) -> dict[tuple[int, int], ContactPair]:
     return dict(sorted(found.items()))
 
 
-def frictions_of(case: Case) -> list[tuple[int, int, float]]:
-    """Return (body, body, coefficient) of the pairs with a friction in `contact.pair`, a <= b.
+def laws_of(case: Case) -> list[tuple[int, int, float, float]]:
+    """Return (body, body, friction, restitution) of the pairs that have one in `contact.pair`.
 
-    Bodies are numbered; an entry of `grains` is given by its first. a == b is for the pairs
-    among its own.
+    Bodies are numbered, a <= b; an entry of `grains` is given by its first. a == b is for the
+    pairs among its own. What a pair does not give is that of `contact`.
     """
-    pairs = listed_pairs(case)
-    return [(a, b, p.friction) for (a, b), p in pairs.items() if p.friction is not None]
+    found = []
+    for (a, b), pair in listed_pairs(case).items():
+        if pair.friction is None and pair.restitution is None:
+            continue
+        friction, restitution = case.contact.friction, case.contact.restitution
+        found.append(
+            (
+                a,
+                b,
+                friction if pair.friction is None else pair.friction,
+                restitution if pair.restitution is None else pair.restitution,
+            )
+        )
+    return found
 
 
 def bonds_of(case: Case) -> list[tuple[int, int]]:
-    """Return (body, body) of the bonded pairs in `contact.pair`, numbered as in `frictions_of`."""
+    """Return (body, body) of the bonded pairs in `contact.pair`, numbered as in `laws_of`."""
     return [ends for ends, pair in listed_pairs(case).items() if pair.bonded]
 
 

@@ -137,6 +137,7 @@ class ContactPair(CaseModel):
 
     Attributes:
         friction: Coulomb coefficient; without one that of `contact`.
+        restitution: speed of parting over that of approach; without one that of `contact`.
         interference: what becomes of what is drawn into each other, as in `contact`.
         bonded: they stick together wherever they meet, as one body of two materials; then without
             friction.
@@ -145,6 +146,7 @@ class ContactPair(CaseModel):
     bodies: list[Text] | None = None
     materials: list[Text] | None = None
     friction: NonNegative | None = None
+    restitution: Annotated[float, Quantity("", "0 <= f <= 1")] | None = None
     interference: Annotated[str, Choice(INTERFERENCES)] | None = None
     bonded: bool = False
 
@@ -157,7 +159,8 @@ class ContactPair(CaseModel):
         names = getattr(self, name)
         if len(names) != 2:
             raise violation("must have two names", "give two", value=names, path=(name,))
-        if (self.friction is None and self.interference is None) != self.bonded:
+        given = (self.friction, self.restitution, self.interference)
+        if all(one is None for one in given) != self.bonded:
             remedy = "give one of them, for example friction = 0.3"
             raise violation("must have either friction or bonded = true", remedy)
         return self

@@ -13,7 +13,7 @@ from pydantic import model_validator
 from mpm3dpp.base.damping import Damping
 from mpm3dpp.base.errors import CaseError, Path, violation
 from mpm3dpp.base.expression import ForceField, SpinField, TotalForce, VelocityField
-from mpm3dpp.base.frames import FRAMES, UPDATED
+from mpm3dpp.base.frames import ALONG, FRAMES, UPDATED, particles_along
 from mpm3dpp.base.machine import BODY_BYTES, MEMORY, memory_text
 from mpm3dpp.base.model import CaseModel, Choice, Count, Text
 from mpm3dpp.base.units import Point, PositiveLength
@@ -93,7 +93,8 @@ class Grains(CaseModel):
         file: a CSV file beside the case file with the columns x, y, z (in 2D without z) and
             radius, in SI units, or `{ file = "grains.csv", unit = "mm" }` (in Python:
             `mpm3dpp.GrainCentres`).
-        particles_per_cell: particles per cell along each direction; default 2.
+        particles_per_cell: particles per cell along each direction; default 2, and 3 of grains of
+            less than 8 cells a radius whose frame is "material".
         spacing: distance of the particles of a grain [m], in place of `particles_per_cell`.
         fill: "shells": circles or spheres about the middle of each grain, turned differently from
             grain to grain, the default without `align`; or "lattice".
@@ -137,8 +138,8 @@ class Grains(CaseModel):
         if self.particles_per_cell is not None and self.spacing is not None:
             rule = "must not be given together with particles_per_cell"
             raise violation(rule, "keep one of the two", path=("spacing",))
-        if self.particles_per_cell is None and self.spacing is None:
-            self.__dict__["particles_per_cell"] = 2
+        if self.particles_per_cell is None and self.spacing is None and self.frame == UPDATED:
+            self.__dict__["particles_per_cell"] = ALONG
         if self.fill == SHELLS and self.align is not None:
             rule = f'goes with fill = "{LATTICE}" only'
             raise violation(rule, "remove one of the two", value=self.align, path=("align",))
@@ -200,7 +201,10 @@ class Grains(CaseModel):
         """Return the distance of neighbouring particles [m]."""
         if self.spacing is not None:
             return self.spacing
-        return float(grid.cell_size / (self.particles_per_cell or 2))
+        along = self.particles_per_cell
+        if along is None:
+            along = particles_along(self.frame, float(self.radii().max()) / grid.cell_size)
+        return float(grid.cell_size / along)
 
     def place(self, dimension: int) -> tuple[Array, Array]:
         """Return centres [m], shape (n, D), and radii [m], shape (n,).

@@ -17,7 +17,8 @@ from mpm3dpp.case.detonation import lighting_times
 from mpm3dpp.case.forces import force_programs
 from mpm3dpp.case.load_pieces import add_load, pieces
 from mpm3dpp.case.motion import Motion
-from mpm3dpp.case.pairs import bonds_of, frictions_of
+from mpm3dpp.case.pairs import bonds_of, laws_of
+from mpm3dpp.case.surface_points import add_surfaces, has_surface
 from mpm3dpp.fill.initial import Overburden, start_columns
 from mpm3dpp.fill.parts import FilledPart, Particles
 from mpm3dpp.fill.slices import near_points
@@ -30,6 +31,7 @@ def add_part(
     part: FilledPart,
     materials: Mapping[tuple[str, str], int],
     above: Overburden | None,
+    point_spacing: float | None,
     world: World | None,
 ) -> None:
     """Add the bodies of an entry, with their motion, loads, and what they begin with.
@@ -40,11 +42,15 @@ def add_part(
         part: the entry.
         materials: their numbers in the core, by `kind_of`.
         above: what presses on them, where a stress is geostatic.
+        point_spacing: of contact points [m]; None where bodies need none.
         world: processes that each give a share of the grains, or a slice of a body.
     """
     material = materials[kind_of(case, part)]
+    has_points = point_spacing is not None and has_surface(case, part.name)
     if part.balls is not None:
-        _add_grains(core, case, part, material, world)
+        leader, own = _add_grains(core, case, part, material, world)
+        if has_points:
+            add_surfaces(core, case, part, leader, own, point_spacing)
         return
     particles = part.own.particles if part.own else part.make(0, 1)
     positions, volumes = particles.positions, particles.volumes
@@ -63,6 +69,8 @@ def add_part(
     for name, load in case.load.items():
         if load.body == part.name:
             add_load(core, case, name, number, pieces(case, name, positions, part.spacing, near))
+    if has_points:
+        add_surfaces(core, case, part, number, particles, point_spacing)
 
 
 def kind_of(case: Case, part: FilledPart) -> tuple[str, str]:
@@ -84,7 +92,8 @@ def _add_body(core: Any, part: FilledPart, particles: Particles, material: int) 
 
 def _add_grains(
     core: Any, case: Case, grains: FilledPart, material: int, world: World | None
-) -> None:
+) -> tuple[int, Particles]:
+    """Hand over the grains that this process has; return these, and the number of the first."""
     first, last = share_of(len(grains.names), world)
     own = grains.share(first, last)
     counts, volumes = grains.survey.counts, grains.volumes
@@ -93,11 +102,12 @@ def _add_grains(
     )
     arrival = lighting_times(case, grains.name, own.positions)
     if arrival is None:
-        return
+        return leader, own
     begin = np.cumsum(own.counts) - own.counts
     for k in range(last - first):
         times = arrival[begin[k] : begin[k] + own.counts[k]].copy()
         core.set_state(leader + first + k, "lighting_time", times)
+    return leader, own
 
 
 def _set_motion(core: Any, number: int, motion: Motion, centre: np.ndarray) -> None:
@@ -138,7 +148,7 @@ def add_actions(
         numbers = [number for name in names for number in numbers_of(name)]
         mass, local, _ = functions((damping.mass, damping.local))
         core.add_damping(numbers, mass, local)
-    for a, b, friction in frictions_of(case):
-        core.set_friction(a, b, friction)
+    for a, b, friction, restitution in laws_of(case):
+        core.set_friction(a, b, friction, restitution)
     for a, b in bonds_of(case):
         core.bond(a, b)

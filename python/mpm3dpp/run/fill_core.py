@@ -11,6 +11,7 @@ from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.frames import MATERIAL
 from mpm3dpp.case.case import Case
+from mpm3dpp.case.surface_points import point_spacing
 from mpm3dpp.fill.initial import overburden
 from mpm3dpp.fill.interference import Interference
 from mpm3dpp.fill.parts import Filled
@@ -55,8 +56,9 @@ def fill_core(core: Any, case: Case, filled: Filled, world: World | None) -> dic
     numbers = {kind: _add_material(core, case, *kind) for kind in used}
     above = overburden(case, filled, world)
     masses = {name: float(part.masses.sum()) for name, part in filled.parts.items()}
+    spacing = point_spacing(case, filled.parts.values())
     for name in list(filled.parts):
-        add_part(core, case, filled.parts.pop(name), numbers, above, world)
+        add_part(core, case, filled.parts.pop(name), numbers, above, spacing, world)
     return masses
 
 

@@ -47,7 +47,7 @@ void check_fused(mpm::testing::Report& report) {
       CHECK(stages_of<D>(scheme, fused, Extra::release).size() >= plain + 2);
       // So do those of bodies on nodes of their own.
       CHECK_EQUAL(place<D>(scheme, fused, "update in the body"), plain);
-      CHECK_EQUAL(stages_of<D>(scheme, fused, Extra::none, true).size(), plain + 1);
+      CHECK_EQUAL(stages_of<D>(scheme, fused, Extra::none, true).size(), plain + 5);
     }
   // A stage of a list is found by its name and what it reads.
   for (const auto* lists : {&Schemes<D>::plain, &Schemes<D>::fused})
@@ -66,5 +66,5 @@ void test_fuse(mpm::testing::Report& report) {
   check_fused<2>(report);
   check_fused<3>(report);
   for (std::size_t k = 0; k < data_names.size(); ++k) CHECK(!data_names[k].empty(), k);
-  CHECK_EQUAL(std::size_t{1} << (data_names.size() - 1), std::size_t{Data::deformation});
+  CHECK_EQUAL(std::size_t{1} << (data_names.size() - 1), std::size_t{Data::kept_spins});
 }

@@ -76,6 +76,9 @@ struct Pair {
         block.records[n][velocity_at + a] =
             block.records[n][mass_at] > 0.0 ? velocity_at_node<D>(i)[a] : 0.0;
     });
+    // Velocities are others than those by which it was known how the body turns.
+    for (KeptSpin& turning : domain.kept_spins) turning.begun = false;
+    domain.ledger.kept_ahead = 0.0;
     domain.ledger.kinetic = kinetic_energy(domain);
     domain.ledger.start = domain.ledger.kinetic + domain.ledger.internal;
   }
@@ -156,6 +159,11 @@ void check_stages(Report& report, BasisId basis, Scheme scheme) {
       stage.run(domain);
       if (stage.name == "exchange forces" || stage.name == "exchange momentum and forces") {
         pair.other.map_forces();
+        pair.check_nodes(report, force_at, &reference::Node<D>::f,
+                         1e-9 * E * std::pow(cell, D - 1));
+      }
+      if (stage.name == "turn bodies on nodes of their own") {
+        pair.other.turn();
         pair.check_nodes(report, force_at, &reference::Node<D>::f,
                          1e-9 * E * std::pow(cell, D - 1));
       }

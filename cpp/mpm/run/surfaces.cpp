@@ -1,0 +1,129 @@
+#include "mpm/run/surfaces.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "mpm/surfaces/law.hpp"
+#include "mpm/surfaces/near_points.hpp"
+#include "mpm/surfaces/overlaps.hpp"
+#include "mpm/surfaces/parts.hpp"
+
+namespace mpm {
+
+template <int D>
+void add_surface(Simulation<D>& simulation, int number, const ContactPointsGiven& given) {
+  Domain<D>& domain = simulation.domain;
+  require(simulation, Phase::building, "surfaces must be added before prepare()");
+  const Body<D>& body = domain.body_at(number);
+  const auto check = [&](bool holds, const char* rule) {
+    if (!holds) throw std::invalid_argument("surface of " + body.name + ": " + rule);
+  };
+  const std::size_t n = given.particles.size();
+  check(given.offsets.size() == n * D && given.areas.size() == n,
+        "offsets must be (points, D), areas (points,)");
+  check(given.spacing > 0.0 && std::isfinite(given.spacing), "spacing must be a finite number > 0");
+  Surfaces<D>& surfaces = domain.surfaces;
+  check(surfaces.given.empty() || surfaces.spacing == given.spacing,
+        "the spacing of points is one for all bodies");
+  surfaces.spacing = given.spacing;
+  for (std::size_t k = 0; k < n; ++k) {
+    GivenPoint<D> point{number, given.particles[k], {}, given.areas[k]};
+    check(point.particle < body.count, "there is no such particle");
+    check(point.area > 0.0 && std::isfinite(point.area), "areas must be finite numbers > 0");
+    for (std::size_t a = 0; a < D; ++a) {
+      const double offset = given.offsets[k * D + a];
+      check(std::isfinite(offset), "offsets must be finite numbers");
+      point.offset[static_cast<int>(a)] = offset;
+    }
+    surfaces.given.push_back(point);
+  }
+}
+
+namespace {
+
+/// The way over which springs begin: about what the fastest particles go in a step of the longest
+/// that is stable [m].
+template <int D>
+double onset_of(const Domain<D>& domain) {
+  double fastest = 0.0, wave = std::numeric_limits<double>::infinity();
+  domain.for_each_particle([&](const ParticlePool<D>& pool, std::uint32_t row) {
+    const Vector3 v = velocity_in_space(pool, row);
+    fastest = std::max(fastest, norm(v));
+  });
+  for (const Body<D>& body : domain.bodies)
+    if (body.deforms()) wave = std::min(wave, std::sqrt(body.stiffness / body.initial_density));
+  return domain.grid.cell_size * std::min(fastest / wave, most_onset);
+}
+
+}  // namespace
+
+template <int D>
+void start_surfaces(Domain<D>& domain) {
+  if (domain.surfaces.given.empty()) return;
+  start_parts(domain);
+  domain.surfaces.onset = onset_of(domain);
+  if (domain.surfaces.meet) find_near_points(domain);
+  set_back_overlaps(domain);
+}
+
+namespace {
+
+constexpr const char* damaged = "its surfaces are damaged";
+
+template <class Value, class Finite>
+void exchange_kept(std::vector<KeptOfContact<Value>>& kept, StateStream& stream, std::size_t points,
+                   Finite&& finite) {
+  stream.vector(kept);
+  if (!stream.restores()) return;
+  StateStream::check(std::ranges::is_sorted(kept, std::less<>{}), damaged);
+  for (const KeptOfContact<Value>& one : kept)
+    StateStream::check(one.point < points && finite(one.value), damaged);
+}
+
+template <int D>
+bool is_finite(const Vec<double, D>& v) {
+  return std::isfinite(dot(v, v));
+}
+
+}  // namespace
+
+template <int D>
+void exchange_surfaces(Domain<D>& domain, StateStream& stream) {
+  Surfaces<D>& surfaces = domain.surfaces;
+  stream.same(surfaces.points.size(), "it was made from another case");
+  if (!surfaces.exist()) return;
+  if (stream.restores()) find_parts(domain);
+  exchange_kept(surfaces.set_back, stream, surfaces.points.size(),
+                [](double x) { return std::isfinite(x); });
+  for (SurfacePart<D>& part : surfaces.parts) {
+    exchange_kept(part.slips, stream, surfaces.points.size(), is_finite<D>);
+    stream(part.of_faces, part.moment_of_faces, part.at_faces);
+  }
+  stream.vector(surfaces.on_hosts);
+  stream.vector(surfaces.between);
+  stream.vector(surfaces.on_bodies);
+  for (const SurfacePart<D>& part : surfaces.parts)
+    if (part.as_one)
+      stream.array(std::span(surfaces.places).subspan(part.first_point, part.points));
+  stream(surfaces.stored_push, surfaces.stored_rub);
+  if (!stream.restores()) return;
+  StateStream::check(std::ranges::is_sorted(surfaces.on_hosts, {}, &ActingOnHost<D>::host),
+                     damaged);
+  std::ranges::fill(surfaces.place_on_hosts, 0);
+  for (std::size_t k = 0; k < surfaces.on_hosts.size(); ++k) {
+    const ActingOnHost<D>& on = surfaces.on_hosts[k];
+    StateStream::check(
+        on.host < surfaces.hosts.size() && is_finite(on.push.force) && is_finite(on.rub.force),
+        damaged);
+    surfaces.place_on_hosts[on.host] = static_cast<std::uint32_t>(k + 1);
+  }
+}
+
+template void add_surface<2>(Simulation<2>&, int, const ContactPointsGiven&);
+template void add_surface<3>(Simulation<3>&, int, const ContactPointsGiven&);
+template void start_surfaces<2>(Domain<2>&);
+template void start_surfaces<3>(Domain<3>&);
+template void exchange_surfaces<2>(Domain<2>&, StateStream&);
+template void exchange_surfaces<3>(Domain<3>&, StateStream&);
+
+}  // namespace mpm

@@ -1,0 +1,32 @@
+#pragma once
+// Contact points of surfaces, as a case gives them, at the start and in a checkpoint.
+#include <span>
+#include <vector>
+
+#include "mpm/run/simulation.hpp"
+#include "mpm/state/state_stream.hpp"
+
+namespace mpm {
+
+/// Contact points of a body, each carried by a particle.
+struct ContactPointsGiven {
+  std::vector<std::uint32_t> particles;  // (n,) their numbers in the body
+  std::span<const double> offsets;       // (n, D) from the particle to the point [m]
+  std::span<const double> areas;         // (n,) [m^2; in 2D m times 1 m]
+  double spacing;                        // of the points of all bodies [m]
+};
+
+/// Give a body the contact points of its surface; before prepare(). Throws std::invalid_argument
+/// for what does not fit.
+template <int D>
+void add_surface(Simulation<D>& simulation, int body, const ContactPointsGiven& given);
+
+/// Find the hosts of the points; what overlaps at the start does not push.
+template <int D>
+void start_surfaces(Domain<D>& domain);
+
+/// What contact points keep from step to step, saved or restored.
+template <int D>
+void exchange_surfaces(Domain<D>& domain, StateStream& stream);
+
+}  // namespace mpm

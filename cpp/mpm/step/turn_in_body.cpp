@@ -1,0 +1,123 @@
+// Bodies on nodes of their own turn as their particles would, not as their nodes
+// (particles/kept_spin.hpp): with the angular momentum L of the body, which the moment T of all
+// forces changes, the nodes shall have I (I - D)^-1 L by the end of the step. What they lack of it
+// besides T is given to them as that of forces m_i alpha x r_i about the centre of mass.
+#include "mpm/comm/all_sums.hpp"
+#include "mpm/step/kept_nodes.hpp"
+#include "mpm/step/patch_loops.hpp"
+#include "mpm/step/stage_functions.hpp"
+
+namespace mpm {
+namespace {
+
+/// Of the nodes of a body, about a point.
+struct TurningSums {
+  RigidSums motion;                  // mass, place, momentum, angular momentum, inertia
+  Vector3 moment = Vector3::zero();  // of the forces [N m]
+  Vector3 force = Vector3::zero();   // [N]
+};
+
+template <int D>
+void add_nodes(Domain<D>& domain, std::size_t p, const Vector3& about, TurningSums& sums) {
+  const Patch<D>& patch = domain.grid.patches[p];
+  const NodeBlock<D> block = domain.grid.block(p);
+  double own[BlockShape<D>::nodes_max];
+  own_nodes(domain.grid, patch, own);
+  for (int n = 0; n < block.count; ++n) {
+    const double m = own[n] * block.records[n][mass_at];
+    if (!(m > 0.0)) continue;
+    const Vector3 r = place_of_kept(domain.grid, patch, block, n) - about;
+    const Vector3 f = in_space<D>(block.vector(n, force_at));
+    sums.motion.add(m, r, in_space<D>(block.vector(n, velocity_at)));
+    sums.moment += cross(r, f);
+    sums.force += f;
+  }
+}
+
+/// About the centre of mass, which moves to it.
+void move_to_centre(TurningSums& sums, Vector3& centre) {
+  RigidSums& s = sums.motion;
+  const Vector3 c = (1.0 / s.mass) * s.first;
+  s.angular = s.angular - cross(c, s.momentum);
+  sums.moment = sums.moment - cross(c, sums.force);
+  const double square = dot(c, c);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) s.inertia[i][j] -= s.mass * ((i == j ? square : 0.0) - c[i] * c[j]);
+  centre += c;
+}
+
+/// What acts on a body as a whole.
+template <int D>
+ActingOnBody acting_as_whole(const Domain<D>& domain, int body) {
+  const auto& all = domain.surfaces.on_bodies;
+  const auto at = std::ranges::lower_bound(all, body, {}, &ActingOnBody::body);
+  return at != all.end() && at->body == body ? *at : ActingOnBody{};
+}
+
+/// The angular acceleration that the nodes lack, and what the body has by the end of the step.
+template <int D>
+Vector3 lacking(const Domain<D>& domain, const Patch<D>& patch, const TurningSums& sums,
+                const Vector3& moment, KeptSpin& turning) {
+  constexpr unsigned axes = D == 2 ? 4u : 7u;
+  const Matrix3& I = sums.motion.inertia;
+  Matrix3 of_body = I;
+  for (int a = 0; a < 3; ++a) of_body[a][a] -= turning.excess;
+  const auto of_particles = [&](const Vector3& nodes) {  // L of the body, of that of its nodes
+    return nodes - turning.excess * spin_of(I, nodes, axes);
+  };
+  const double acts = time_of_forces(domain, patch);
+  const Vector3 now = sums.motion.angular;
+  // What has changed the nodes beside forces, as damping or what sets velocities.
+  turning.momentum =
+      turning.begun ? turning.momentum + of_particles(now - turning.of_nodes) : of_particles(now);
+  turning.begun = true;
+  turning.momentum += acts * (sums.moment + moment);
+  turning.spin = spin_of(of_body, turning.momentum, axes);
+  turning.of_nodes = I * turning.spin;
+  if constexpr (D == 2) turning.of_nodes = {0.0, 0.0, turning.of_nodes[2]};
+  const Vector3 lacks = turning.of_nodes - now - acts * sums.moment;
+  return acts > 0.0 ? (1.0 / acts) * spin_of(I, lacks, axes) : Vector3::zero();
+}
+
+}  // namespace
+
+template <int D>
+void turn_in_body(Domain<D>& domain) {
+  domain.threads.for_each(domain.kept_spins.size(), [&](std::size_t k) {
+    KeptSpin& turning = domain.kept_spins[k];
+    const auto patches = patches_of<D>(domain.grid.patches, turning.body);
+    if (patches.empty()) return;
+    const auto first = static_cast<std::size_t>(patches.data() - domain.grid.patches.data());
+    TurningSums sums;
+    for (std::size_t p = first; p < first + patches.size(); ++p)
+      add_nodes(domain, p, turning.centre, sums);
+    move_to_centre(sums, turning.centre);
+    const ActingOnBody as_whole = acting_as_whole(domain, turning.body);
+    const Vector3 force = as_whole.force();
+    const Vector3 alpha = lacking(domain, patches[0], sums,
+                                  as_whole.moment() - cross(turning.centre, force), turning);
+    const Vector3 straight = (1.0 / sums.motion.mass) * force;
+    turning.velocity =
+        (1.0 / sums.motion.mass) * sums.motion.momentum +
+        time_of_forces(domain, patches[0]) *
+            ((1.0 / sums.motion.mass) * sums.force + straight + in_space<D>(domain.gravity));
+    // Kinetic energy is that of the body too.
+    domain.sums[first].kept_ahead -= 0.5 * turning.excess * dot(turning.spin, turning.spin);
+    for (std::size_t p = first; p < first + patches.size(); ++p) {
+      const Patch<D>& patch = domain.grid.patches[p];
+      const NodeBlock<D> block = domain.grid.block(p);
+      for (int n = 0; n < block.count; ++n) {
+        const double m = block.records[n][mass_at];
+        const Vector3 f =
+            m *
+            (straight + cross(alpha, place_of_kept(domain.grid, patch, block, n) - turning.centre));
+        for (int a = 0; a < D; ++a) block.records[n][force_at + a] += f[a];
+      }
+    }
+  });
+}
+
+template void turn_in_body<2>(Domain<2>&);
+template void turn_in_body<3>(Domain<3>&);
+
+}  // namespace mpm

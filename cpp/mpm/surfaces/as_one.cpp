@@ -1,0 +1,105 @@
+#include "mpm/surfaces/as_one.hpp"
+
+#include "mpm/step/kept_nodes.hpp"
+#include "mpm/step/stage_functions.hpp"
+
+namespace mpm {
+namespace {
+
+/// The first part of a body.
+template <int D>
+const SurfacePart<D>& part_as_one(const Surfaces<D>& surfaces, int body) {
+  return *std::ranges::lower_bound(surfaces.parts, body, {}, &SurfacePart<D>::body);
+}
+
+template <int D>
+double time_of_surface_forces(const Domain<D>& domain) {
+  return 0.5 * (domain.time_step + domain.step_before);
+}
+
+}  // namespace
+
+template <int D>
+void move_points_as_one(Domain<D>& domain) {
+  Surfaces<D>& surfaces = domain.surfaces;
+  for (const SurfacePart<D>& part : surfaces.parts) {
+    if (!part.as_one) continue;
+    const Body<D>& body = domain.body_at(part.body);
+    if (body.is_prescribed() ? !body.motion->moves : body.active() == 0) continue;
+    const RigidMotion now = motion_as_one(domain, part.body);
+    Vector3 before = now.centre - domain.time_step * now.velocity;
+    Matrix3 turned;
+    if (body.is_prescribed()) {
+      turned = rotation(domain.time_step * now.spin);
+    } else {
+      before = domain.rigid_before[static_cast<std::size_t>(body.rigid)].centre;
+      turned = domain.rigid_turns[static_cast<std::size_t>(body.rigid)];
+    }
+    for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
+      const Vector3 x = now.centre + turned * (in_space<D>(surfaces.places[c]) - before);
+      for (int a = 0; a < D; ++a) surfaces.places[c][a] = x[a];
+    }
+  }
+}
+
+template <int D>
+void add_work_as_one(Domain<D>& domain, bool at_end) {
+  for (const ActingOnBody& on : domain.surfaces.on_bodies) {
+    const RigidMotion motion = motion_as_one(domain, on.body);
+    PatchSums<D>& sums = domain.sums[part_as_one(domain.surfaces, on.body).patch];
+    const auto work = [&](const Vector3& force, const Vector3& moment) {
+      return 0.5 * domain.time_step *
+             (dot(force, motion.velocity) + dot(moment - cross(motion.centre, force), motion.spin));
+    };
+    const double push = work(on.push, on.moment_of_push), rub = work(on.rub, on.moment_of_rub);
+    sums.surface_push += push;
+    sums.surface_rub += rub;
+    if (domain.body_at(on.body).is_prescribed()) {
+      sums.prescribed.work += push + rub;
+    } else if (domain.body_at(on.body).keeps_nodes()) {
+      sums.force_work -= push + rub;
+      sums.kept_shift += push + rub;
+      if (at_end) sums.kept_ahead += push + rub;
+    } else {
+      // It changes the particles' velocities at once, which counts as made_rigid.
+      sums.made_rigid += push + rub;
+      sums.transferred -= push + rub;
+      if (at_end) sums.kept_ahead += push + rub;
+    }
+  }
+}
+
+template <int D>
+void push_rigid_by_surfaces(Domain<D>& domain) {
+  const double acts = time_of_surface_forces(domain);
+  for (const ActingOnBody& on : domain.surfaces.on_bodies) {
+    const Body<D>& body = domain.body_at(on.body);
+    if (body.keeps_nodes()) continue;  // turn_in_body()
+    if (body.is_prescribed()) {
+      PatchSums<D>& sums = domain.sums[part_as_one(domain.surfaces, on.body).patch];
+      for (int a = 0; a < D; ++a) sums.prescribed.impulse[a] += acts * on.force()[a];
+      sums.angular.on_prescribed += acts * on.moment();
+      continue;
+    }
+    const RigidMotion motion = motion_as_one(domain, on.body);
+    const Vector3 change = (acts / body.total_mass) * on.force();
+    const Vector3 spin = spin_of(
+        motion.inertia, acts * (on.moment() - cross(motion.centre, on.force())), motion.free_axes);
+    ParticlePool<D>& pool = domain.pool_of(body);
+    for (const Patch<D>& patch : patches_of<D>(domain.grid.patches, on.body))
+      for (const std::uint32_t row : pool.rows(patch)) {
+        const Vector3 arm = in_space<D>(pool.position_of(row)) - motion.centre;
+        const Vector3 v = change + cross(spin, arm);
+        for (int a = 0; a < D; ++a) pool.v(a)[row] += static_cast<Storage>(v[a]);
+      }
+  }
+}
+
+template void move_points_as_one<2>(Domain<2>&);
+template void move_points_as_one<3>(Domain<3>&);
+template void add_work_as_one<2>(Domain<2>&, bool);
+template void add_work_as_one<3>(Domain<3>&, bool);
+template void push_rigid_by_surfaces<2>(Domain<2>&);
+template void push_rigid_by_surfaces<3>(Domain<3>&);
+
+}  // namespace mpm

@@ -1,0 +1,70 @@
+#pragma once
+// How deep a point p lies in the surface of another body, after the sum of decision 0054, by the
+// body's contact points q of areas A_q, e apart and half of that under the surface:
+//   S = sum_q a_q w_q,  w_q = (1 - |x_q - x_p|^2 / (R e)^2)^n,  a_q = A_q / e^(D - 1),
+//   zeta = sqrt(R^2 - a^2 (S / S_1)^(1 / m)),  o = e - b - e zeta,                           (S3)
+// with a^2 = R^2 - 1, m = n + (D - 1) / 2, and S_1 the sum at the height of e over points all
+// around. The forces follow from the energy k o^2 / 2: on q - k o do/dx_q, on p the sum of their
+// opposites.
+//
+// The longest waves that a lattice of points has in S vanish at zeros of the Bessel function J_m at
+// 2 pi a. The second is taken here, and not the first as there: points of a sphere are no lattice,
+// and what they leave falls with a^-(m + 1/2).
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mpm/surfaces/surfaces.hpp"
+
+namespace mpm {
+
+template <int D>
+class SurfacePoint {
+ public:
+  static constexpr int n = D == 2 ? 6 : 5;
+  static constexpr double reach = D == 2 ? 2.4725 : 2.3829;  // not less than R
+
+  explicit SurfacePoint(double sum) {
+    const double share = a2 * std::pow(sum / at_edge(), 1.0 / m);
+    zeta = std::sqrt(std::max(reach_squared - share, least_zeta_squared));
+    by_sum = -share / (2.0 * zeta * m * sum);
+  }
+  double zeta, by_sum;  // and its derivative with respect to S
+
+  /// What a point of the surface at that squared distance adds to the sum, times e^(D - 1).
+  static double weight(double square, double spacing) {
+    const double y = 1.0 - square / (reach_squared * spacing * spacing);
+    return y > 0.0 ? power_of<n>(y) : 0.0;
+  }
+  /// d w / d x_q over x_q - x_p.
+  static double slope(double square, double spacing) {
+    const double scale = 1.0 / (reach_squared * spacing * spacing), y = 1.0 - square * scale;
+    return y > 0.0 ? -2.0 * n * scale * power_of<n - 1>(y) : 0.0;
+  }
+  /// The sum at a height of so many spacings.
+  static double sum_at(double height) {
+    return at_edge() * std::pow((reach_squared - height * height) / a2, m);
+  }
+
+ private:
+  static constexpr double zero = D == 2 ? 14.207392458842 : 13.589290170541;  // of J_m, the second
+  static constexpr double a = zero / (2.0 * std::numbers::pi), a2 = a * a;
+  static constexpr double reach_squared = 1.0 + a2, m = n + 0.5 * (D - 1);  // R^2
+  static_assert(reach * reach >= reach_squared && reach * reach < 1.001 * reach_squared);
+  // Deeper than this zeta the surface has no height any more, and the force stays as it is.
+  static constexpr double least_zeta_squared = 0.01;
+
+  template <int exponent>
+  static constexpr double power_of(double x) {
+    double r = x;
+    for (int k = 1; k < exponent; ++k) r *= x;
+    return r;
+  }
+  /// S_1: the integral of (1 - u^2)^n, |u| < 1, over lengths or areas, times (a / R)^2n a^(D - 1).
+  static constexpr double at_edge() {
+    return power_of<n>(a2 / reach_squared) *
+           (D == 2 ? 2048.0 / 3003.0 * a : std::numbers::pi / 6.0 * a2);
+  }
+};
+
+}  // namespace mpm

@@ -1,0 +1,154 @@
+#include "mpm/surfaces/overlaps.hpp"
+
+#include "mpm/surfaces/felt.hpp"
+#include "mpm/surfaces/law.hpp"
+
+namespace mpm {
+namespace {
+
+/// The faces of the box that a point overlaps, by o = e / 2 - z: f(opposite, o, normal).
+template <int D, class F>
+void for_each_face(const Domain<D>& domain, const Vec<double, D>& place, F&& f) {
+  const TileGrid<D>& grid = domain.grid;
+  if (!grid.walls.touch()) return;
+  for (int axis = D - 1; axis >= 0; --axis)  // by the number of the opposite
+    for (const int side : {1, 0}) {
+      if (grid.walls.face[axis][side] != Wall::contact) continue;
+      const double x = place[axis] - grid.origin[axis];
+      const double length = grid.cell_size * grid.walls.cells[static_cast<std::size_t>(axis)];
+      const double height = side == 0 ? x : length - x;
+      const double overlap = 0.5 * domain.surfaces.spacing - height;
+      if (!(overlap > -0.5 * domain.surfaces.onset)) continue;
+      Vec<double, D> normal = Vec<double, D>::zero();
+      normal[axis] = side == 0 ? 1.0 : -1.0;
+      f(opposite_face(axis, side), overlap, normal);
+    }
+}
+
+/// A point that overlaps a face.
+template <int D>
+SurfaceTouch<D> touch_of_face(const Domain<D>& domain, int body, std::uint32_t point, Opposite face,
+                              double overlap, double set_back, const Vec<double, D>& normal) {
+  const Surfaces<D>& surfaces = domain.surfaces;
+  SurfaceTouch<D> touch;
+  touch.point = point;
+  touch.opposite = face;
+  touch.overlap = overlap - set_back;
+  touch.stiffness = stiffness_at_face(surfaces.points[point].area, domain.grid.cell_size,
+                                      1.0 / domain.body_at(body).stiffness);
+  touch.slope = normal;
+  touch.arm = (overlap - 0.5 * surfaces.spacing) * normal;  // -z n
+  return touch;
+}
+
+/// The sum of the weights of the points of another body around a point, (S3).
+template <int D>
+double sum_of_weights(const Surfaces<D>& surfaces, const SurfacePart<D>& part,
+                      const NearPoints& near) {
+  const Vec<double, D> here = surfaces.places[near.point];
+  double sum = 0.0;
+  for (std::uint32_t k = near.first; k < near.first + near.count; ++k) {
+    const std::uint32_t q = part.near[k];
+    const Vec<double, D> way = surfaces.places[q] - here;
+    sum += surfaces.points[q].area * SurfacePoint<D>::weight(dot(way, way), surfaces.spacing);
+  }
+  return sum / std::pow(surfaces.spacing, D - 1);
+}
+
+/// A point that overlaps another body by e - e zeta - b, with the points of this that it feels.
+template <int D>
+void add_touch_of_body(const Domain<D>& domain, SurfacePart<D>& part, const NearPoints& near,
+                       double sum, double set_back) {
+  const Surfaces<D>& surfaces = domain.surfaces;
+  const double e = surfaces.spacing, share = 1.0 / (sum * std::pow(e, D - 1));
+  const SurfacePoint<D> in(sum);
+  SurfaceTouch<D> touch;
+  touch.point = near.point;
+  touch.opposite = near.body;
+  touch.overlap = e - e * in.zeta - set_back;
+  if (!(touch.overlap > -0.5 * domain.surfaces.onset)) return;
+  touch.stiffness = stiffness_of_point(surfaces.points[near.point].area, domain.grid.cell_size,
+                                       1.0 / domain.body_at(part.body).stiffness,
+                                       1.0 / domain.body_at(near.body).stiffness);
+  touch.first_felt = static_cast<std::uint32_t>(part.felt.size());
+  const Vec<double, D> here = surfaces.places[near.point];
+  Vec<double, D> slopes = Vec<double, D>::zero();
+  for (std::uint32_t k = near.first; k < near.first + near.count; ++k) {
+    const std::uint32_t q = part.near[k];
+    const Vec<double, D> way = surfaces.places[q] - here;
+    const double square = dot(way, way), weight = SurfacePoint<D>::weight(square, e);
+    if (!(weight > 0.0)) continue;
+    const double area = surfaces.points[q].area;
+    // do/dx_q = - e dzeta/dS a_q dw/dx_q
+    const double slope = -e * in.by_sum * area * share * sum * SurfacePoint<D>::slope(square, e);
+    part.felt.push_back({q, area * weight * share, slope * way});
+    slopes += slope * way;
+  }
+  touch.felt = static_cast<std::uint32_t>(part.felt.size()) - touch.first_felt;
+  touch.slope = slopes;
+  touch.arm = (-0.5 * e * in.zeta) * normalised(slopes);
+  part.touches.push_back(touch);
+}
+
+/// f(near points, the sum of their weights) for the bodies that a point overlaps, from the first of
+/// SurfacePart::near_of that are not before it on.
+template <int D, class F>
+void for_each_body(const Domain<D>& domain, const SurfacePart<D>& part, std::uint32_t point,
+                   std::size_t& next, F&& f) {
+  const double least =
+      SurfacePoint<D>::sum_at(1.0 + 0.5 * domain.surfaces.onset / domain.surfaces.spacing);
+  for (; next < part.near_of.size() && part.near_of[next].point == point; ++next) {
+    const NearPoints& near = part.near_of[next];
+    const double sum = sum_of_weights(domain.surfaces, part, near);
+    if (sum > least) f(near, sum);
+  }
+}
+
+}  // namespace
+
+template <int D>
+void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part) {
+  const Surfaces<D>& surfaces = domain.surfaces;
+  part.touches.clear();
+  part.felt.clear();
+  std::size_t next = 0;
+  for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
+    // Bodies that do not deform are held by faces as a whole.
+    if (!part.as_one)
+      for_each_face(domain, surfaces.places[c],
+                    [&](Opposite face, double overlap, const Vec<double, D>& normal) {
+                      const double back = set_back_of(surfaces, c, face);
+                      if (overlap - back > -0.5 * domain.surfaces.onset)
+                        part.touches.push_back(
+                            touch_of_face(domain, part.body, c, face, overlap, back, normal));
+                    });
+    for_each_body(domain, part, c, next, [&](const NearPoints& near, double sum) {
+      add_touch_of_body(domain, part, near, sum, set_back_of(surfaces, c, near.body));
+    });
+  }
+}
+
+template <int D>
+void set_back_overlaps(Domain<D>& domain) {
+  Surfaces<D>& surfaces = domain.surfaces;
+  for (const SurfacePart<D>& part : surfaces.parts) {
+    std::size_t next = 0;
+    for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
+      if (!part.as_one)
+        for_each_face(domain, surfaces.places[c], [&](Opposite face, double overlap, const auto&) {
+          surfaces.set_back.push_back({c, face, overlap + 0.5 * surfaces.onset});
+        });
+      for_each_body(domain, part, c, next, [&](const NearPoints& near, double sum) {
+        const double overlap = surfaces.spacing * (1.0 - SurfacePoint<D>(sum).zeta);
+        surfaces.set_back.push_back({c, near.body, overlap + 0.5 * surfaces.onset});
+      });
+    }
+  }
+}
+
+template void find_overlaps<2>(const Domain<2>&, SurfacePart<2>&);
+template void find_overlaps<3>(const Domain<3>&, SurfacePart<3>&);
+template void set_back_overlaps<2>(Domain<2>&);
+template void set_back_overlaps<3>(Domain<3>&);
+
+}  // namespace mpm

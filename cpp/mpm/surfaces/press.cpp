@@ -1,0 +1,118 @@
+#include "mpm/surfaces/press.hpp"
+
+#include "mpm/surfaces/as_one.hpp"
+#include "mpm/surfaces/law.hpp"
+
+namespace mpm {
+namespace {
+
+/// What the spring of friction has slipped by so far; it is forgotten when a point parts.
+template <int D>
+Vec<double, D> slip_of(const SurfacePart<D>& part, std::uint32_t point, Opposite opposite) {
+  const KeptOfContact<Vec<double, D>> wanted{point, opposite, {}};
+  const auto at = std::ranges::lower_bound(part.slips, wanted, std::less<>{});
+  const bool found = at != part.slips.end() && !(wanted < *at);
+  return found ? at->value : Vec<double, D>::zero();
+}
+
+template <int D>
+double friction_with(const Domain<D>& domain, int body, Opposite opposite) {
+  if (is_face(opposite))
+    return domain.grid.walls.friction[axis_of_face(opposite)][side_of_face(opposite)];
+  return law_of(domain.contact_settings, domain.body_at(body).group, domain.body_at(opposite).group)
+      .friction;
+}
+
+/// How fast the body of a point moves at a place, as find_motions() has found.
+template <int D>
+Vec<double, D> velocity_of_point(const Domain<D>& domain, std::uint32_t point,
+                                 const Vec<double, D>& reach, const Vec<double, D>& place) {
+  const Surfaces<D>& surfaces = domain.surfaces;
+  const std::uint32_t host = surfaces.points[point].host;
+  const SurfacePart<D>& part = surfaces.parts[surfaces.hosts[host].part];
+  if (!part.as_one) return surfaces.motions[surfaces.place_of_motion[host] - 1].at(reach);
+  const Vector3 v = motion_as_one(domain, part.body).velocity_at(in_space<D>(place));
+  Vec<double, D> velocity;
+  for (int a = 0; a < D; ++a) velocity[a] = v[a];
+  return velocity;
+}
+
+/// The velocity of a point's body against the other's at the place of contact.
+template <int D>
+Vec<double, D> slip_velocity(const Domain<D>& domain, const SurfacePart<D>& part,
+                             const SurfaceTouch<D>& touch) {
+  const Vec<double, D> place = domain.surfaces.places[touch.point] + touch.arm;
+  Vec<double, D> u = velocity_of_point(domain, touch.point, touch.reach, place);
+  for (std::uint32_t k = touch.first_felt; k < touch.first_felt + touch.felt; ++k) {
+    const FeltPoint<D>& felt = part.felt[k];
+    u -= felt.share *
+         velocity_of_point(domain, felt.point, reach_of(domain, felt.point, place), place);
+  }
+  return u;
+}
+
+}  // namespace
+
+template <int D>
+void find_motions(Domain<D>& domain) {
+  Surfaces<D>& surfaces = domain.surfaces;
+  for (const std::uint32_t host : surfaces.moving) surfaces.place_of_motion[host] = 0;
+  surfaces.moving.clear();
+  const auto needs = [&](std::uint32_t point) {
+    const std::uint32_t host = surfaces.points[point].host;
+    const bool as_one = surfaces.parts[surfaces.hosts[host].part].as_one;
+    if (as_one || surfaces.place_of_motion[host] != 0) return;
+    surfaces.moving.push_back(host);
+    surfaces.place_of_motion[host] = static_cast<std::uint32_t>(surfaces.moving.size());
+  };
+  for (const SurfacePart<D>& part : surfaces.parts) {
+    for (const SurfaceTouch<D>& touch : part.touches) needs(touch.point);
+    for (const FeltPoint<D>& felt : part.felt) needs(felt.point);
+  }
+  surfaces.motions.resize(surfaces.moving.size());
+  domain.threads.for_each(surfaces.moving.size(), [&](std::size_t k) {
+    surfaces.motions[k] = motion_of<velocity_at>(domain, surfaces.hosts[surfaces.moving[k]]);
+  });
+}
+
+template <int D>
+void press_part(Domain<D>& domain, SurfacePart<D>& part) {
+  const Surfaces<D>& surfaces = domain.surfaces;
+  part.new_slips.clear();
+  part.stored_push = part.stored_rub = 0.0;
+  part.of_faces = {};
+  part.moment_of_faces = Vector3::zero();
+  part.at_faces = false;
+  for (SurfaceTouch<D>& touch : part.touches) {
+    touch.reach = reach_of(domain, touch.point, surfaces.places[touch.point] + touch.arm);
+    touch.rub = Vec<double, D>::zero();
+    touch.pushed = pushed_by(touch.overlap, surfaces.onset);
+    touch.push = touch.stiffness * touch.pushed * touch.slope;
+    part.stored_push += touch.stiffness * stored_by(touch.overlap, surfaces.onset);
+    const double mu = friction_with(domain, part.body, touch.opposite), push = norm(touch.push);
+    if (mu > 0.0 && push > 0.0) {
+      const Vec<double, D> way = domain.time_step * slip_velocity(domain, part, touch);
+      const Friction<D> friction = rub(slip_of(part, touch.point, touch.opposite),
+                                       (1.0 / push) * touch.push, way, touch.stiffness, mu, push);
+      touch.rub = friction.force;
+      touch.rubbed = friction.taken;
+      part.stored_rub += friction.stored;
+      part.new_slips.push_back({touch.point, touch.opposite, friction.slip});
+    }
+    if (!is_face(touch.opposite)) continue;
+    part.at_faces = true;
+    const Vec<double, D> force = touch.push + touch.rub;
+    const unsigned face = 1u << (-1 - touch.opposite);
+    for (int a = 0; a < D; ++a) part.of_faces.add(face, a, force[a]);
+    part.moment_of_faces +=
+        cross(in_space<D>(surfaces.places[touch.point] + touch.arm), in_space<D>(force));
+  }
+  std::swap(part.slips, part.new_slips);
+}
+
+template void find_motions<2>(Domain<2>&);
+template void find_motions<3>(Domain<3>&);
+template void press_part<2>(Domain<2>&, SurfacePart<2>&);
+template void press_part<3>(Domain<3>&, SurfacePart<3>&);
+
+}  // namespace mpm

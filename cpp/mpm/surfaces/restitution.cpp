@@ -1,0 +1,86 @@
+// Restitution e between two bodies that touch (after Walton & Braun 1986): of the normal force N of
+// the springs the bodies feel e^2 N as they part, so that of the energy that they gave e^2 comes
+// back, whatever the law of the force. The rest, (1 - e^2) N, acts between their motions as wholes,
+// at the middle of the contact, so that no wave is made:
+//   F_n = - (1 - e^2) N (1 + tanh(u_n / u_s)) / 2,   u_s = N dt / m*,
+// u being that of the rigid motions there and u_s what keeps a contact at rest from trembling.
+// Along the surface a dashpot takes what swings on friction that sticks, 2 beta (k m*)^(1/2) u_t up
+// to what Coulomb's law leaves, with beta of the linear dashpot of that restitution (Tsuji, Tanaka
+// & Ishida 1992) and k of the springs.
+#include "mpm/surfaces/restitution.hpp"
+
+#include <numbers>
+
+#include "mpm/surfaces/as_one.hpp"
+
+namespace mpm {
+namespace {
+
+/// 1 / mass of a body; 0 of those whose motion is prescribed, and of faces.
+template <int D>
+double lightness(const Domain<D>& domain, Opposite number) {
+  if (is_face(number) || domain.body_at(number).is_prescribed()) return 0.0;
+  return 1.0 / domain.body_at(number).total_mass;
+}
+
+template <int D>
+PairLaw law_between(const Domain<D>& domain, const ActingBetween<D>& pair) {
+  const ContactSettings& settings = domain.contact_settings;
+  if (!is_face(pair.b))
+    return law_of(settings, domain.body_at(pair.a).group, domain.body_at(pair.b).group);
+  const double friction = domain.grid.walls.friction[axis_of_face(pair.b)][side_of_face(pair.b)];
+  return {friction, false, 0.0, settings.restitution};
+}
+
+template <int D>
+Vector3 velocity_at_place(const Domain<D>& domain, Opposite number, const Vector3& place) {
+  return is_face(number) ? Vector3::zero() : motion_as_one(domain, number).velocity_at(place);
+}
+
+void add_at(std::vector<ActingOnBody>& all, int body, const Vector3& push, const Vector3& rub,
+            const Vector3& place) {
+  ActingOnBody& on = acting_on_body(all, body);
+  on.push += push;
+  on.rub += rub;
+  on.moment_of_push += cross(place, push);
+  on.moment_of_rub += cross(place, rub);
+}
+
+}  // namespace
+
+template <int D>
+void add_restitution(Domain<D>& domain) {
+  if (!restitution_takes(domain.contact_settings)) return;
+  Surfaces<D>& surfaces = domain.surfaces;
+  const double dt = domain.time_step;
+  for (const ActingBetween<D>& pair : surfaces.between) {
+    const PairLaw law = law_between(domain, pair);
+    const double light = lightness(domain, pair.a) + lightness(domain, pair.b);
+    const double e = law.restitution, push = norm(pair.push);
+    if (!(e < 1.0 && push > 0.0 && light > 0.0 && dt > 0.0)) continue;
+    const double mass = 1.0 / light;
+    const Vector3 normal = (1.0 / push) * in_space<D>(pair.push);
+    const Vector3 place = (1.0 / pair.size) * in_space<D>(pair.middle);
+    const Vector3 u =
+        velocity_at_place(domain, pair.a, place) - velocity_at_place(domain, pair.b, place);
+    const double parting = dot(u, normal);
+    const double slow = push * dt / mass;
+    const double taken = (1.0 - e * e) * push * 0.5 * (1.0 + std::tanh(parting / slow));
+    const Vector3 along = u - parting * normal;
+    const double swing = norm(along), log_e = std::log(std::max(e, 1e-3));
+    const double beta = -log_e / std::sqrt(std::numbers::pi * std::numbers::pi + log_e * log_e);
+    const double rubbed = norm(pair.on_first - pair.push);
+    const double most = std::max(law.friction * push - rubbed, 0.0);
+    const double drag =
+        std::min(2.0 * beta * std::sqrt(pair.stiffness * mass), 0.25 * mass / dt) * swing;
+    const Vector3 rub = swing > 0.0 ? (-std::min(drag, most) / swing) * along : Vector3::zero();
+    const Vector3 back = -taken * normal;
+    add_at(surfaces.on_bodies, pair.a, back, rub, place);
+    if (!is_face(pair.b)) add_at(surfaces.on_bodies, pair.b, -1.0 * back, -1.0 * rub, place);
+  }
+}
+
+template void add_restitution<2>(Domain<2>&);
+template void add_restitution<3>(Domain<3>&);
+
+}  // namespace mpm

@@ -1,0 +1,231 @@
+#pragma once
+// Contact between the surfaces of bodies: plain data. Each body has contact points on the surface
+// that its shape has, each carried by the particle nearest to it, its host. A step ends with
+//   place_points.hpp   where they are, x_c = x_p + F_p d;
+//   find_touches.hpp   which of them overlap a face of the box or another body, and how deep;
+//   law.hpp            springs that follow from an energy, and Coulomb friction that remembers;
+//   host_forces.hpp    what comes to the hosts, and from these to their nodes in the next step.
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "mpm/layout/tile.hpp"
+#include "mpm/math/tensor.hpp"
+#include "mpm/rigid/rigid_motion.hpp"
+#include "mpm/walls/face_impulses.hpp"
+
+namespace mpm {
+
+/// A contact point as it is given, before its host has a row.
+template <int D>
+struct GivenPoint {
+  int body = 0;
+  std::uint32_t particle = 0;  // number of its host in the body
+  Vec<double, D> offset;       // from the host to the point, in the body at the start [m]
+  double area = 0.0;           // of its share of the surface [m^2; in 2D m times 1 m]
+};
+
+/// A particle that carries contact points. What acts on these acts on its nodes.
+template <int D>
+struct Host {
+  std::uint32_t part = 0, row = 0;
+  std::int32_t first_node = 0;  // its cell's own, in the patch's block
+  Vec<double, D> xi;            // its place in its cell
+};
+
+template <int D>
+struct ContactPoint {
+  std::uint32_t host = 0;
+  Vec<double, D> offset;  // from the host, in the body at the start [m]
+  double area = 0.0;      // [m^2; in 2D m times 1 m]
+};
+
+/// The sums of forces t at places X_p + d of a body, X_p that of the host: t, and t (x) d. They act
+/// on its nodes with t N_ip + (t (x) d) grad_X N_ip, of which force, moment and power are those of
+/// the forces at these places.
+template <int D>
+struct ForceAtHost {
+  Vec<double, D> force = Vec<double, D>::zero();  // [N]
+  Mat<double, D> moment{};                        // [N m]
+
+  void add(const Vec<double, D>& t, const Vec<double, D>& d) {
+    force += t;
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b) moment[a][b] += t[a] * d[b];
+  }
+  void add(const ForceAtHost& other) {
+    force += other.force;
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b) moment[a][b] += other.moment[a][b];
+  }
+};
+
+/// Whom a point touches: a body by its number, a face of the box by -1 - (2 axis + side).
+using Opposite = std::int32_t;
+constexpr Opposite opposite_face(int axis, int side) { return -1 - (2 * axis + side); }
+constexpr bool is_face(Opposite opposite) { return opposite < 0; }
+constexpr int axis_of_face(Opposite opposite) { return (-1 - opposite) / 2; }
+constexpr int side_of_face(Opposite opposite) { return (-1 - opposite) % 2; }
+
+/// A number or a vector that a contact point keeps of its contact with an opposite.
+template <class Value>
+struct KeptOfContact {
+  std::uint32_t point = 0;
+  Opposite opposite = 0;
+  Value value{};
+
+  friend bool operator<(const KeptOfContact& x, const KeptOfContact& y) {
+    return x.point != y.point ? x.point < y.point : x.opposite < y.opposite;
+  }
+};
+
+/// A point that overlaps an opposite.
+template <int D>
+struct SurfaceTouch {
+  std::uint32_t point = 0;
+  Opposite opposite = 0;
+  double overlap = 0.0;    // [m]
+  double stiffness = 0.0;  // [N/m]
+  double pushed = 0.0;     // of the overlap, what pushes [m]
+  Vec<double, D> slope;    // of the overlap with the point's place, backwards: where it is pushed
+  Vec<double, D> push;     // on the point, by the spring [N]
+  Vec<double, D> rub;      // at the place of contact, by friction [N]
+  Vec<double, D> arm;      // from the point to that place [m]
+  Vec<double, D> reach;    // from the host to that place, in the body at the start [m]
+  double rubbed = 0.0;     // taken by friction in the step [J]
+  // The points of the other body that it feels, of SurfacePart::felt.
+  std::uint32_t first_felt = 0, felt = 0;
+};
+
+/// A point of another body that a point feels.
+template <int D>
+struct FeltPoint {
+  std::uint32_t point = 0;
+  double share = 0.0;    // of the weights of all that are felt
+  Vec<double, D> slope;  // of the overlap with this point's place
+};
+/// Points of another body that may be near to a point.
+struct NearPoints {
+  std::uint32_t point = 0;
+  std::int32_t body = 0;
+  std::uint32_t first = 0, count = 0;  // of SurfacePart::near
+};
+
+/// How a host moves: the mean of its nodes' velocities, and its gradient in the body at the start.
+template <int D>
+struct HostMotion {
+  Vec<double, D> mean;      // [m/s]
+  Mat<double, D> gradient;  // [1/s]
+
+  /// At d from the host, in the body at the start.
+  Vec<double, D> at(const Vec<double, D>& d) const {
+    Vec<double, D> v = mean;
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b) v[a] += gradient[a][b] * d[b];
+    return v;
+  }
+  /// With forces that act there [W].
+  double power(const ForceAtHost<D>& forces) const {
+    double sum = dot(forces.force, mean);
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b) sum += forces.moment[a][b] * gradient[a][b];
+    return sum;
+  }
+};
+
+/// What passes between two bodies in the coming step.
+template <int D>
+struct ActingBetween {
+  int a = 0, b = 0;                                  // a < b
+  Vec<double, D> on_first = Vec<double, D>::zero();  // [N]
+  double rubbed = 0.0;                               // taken by friction in the step before [J]
+  // Of the springs the normal force on the first, the sum of the sizes, and of places times these.
+  Vec<double, D> push = Vec<double, D>::zero(), middle = Vec<double, D>::zero();  // [N]; [N m]
+  double size = 0.0, stiffness = 0.0;                                             // [N]; [N/m]
+  // Of the deepest overlap: it, the unit vector from a to b, and where.
+  double overlap = -std::numeric_limits<double>::infinity();
+  Vec<double, D> normal = Vec<double, D>::zero(), place = Vec<double, D>::zero();
+};
+
+/// What acts on a host in the coming step.
+template <int D>
+struct ActingOnHost {
+  std::uint32_t host = 0;
+  ForceAtHost<D> push, rub;  // by springs, by friction
+};
+
+/// What acts on a body as a whole in the coming step: on one that does not deform all of it, on
+/// others what takes the energy of restitution.
+struct ActingOnBody {
+  int body = 0;
+  Vector3 push = Vector3::zero(), rub = Vector3::zero();  // by springs, by friction [N]
+  // Of the two, about the origin [N m].
+  Vector3 moment_of_push = Vector3::zero(), moment_of_rub = Vector3::zero();
+
+  Vector3 force() const { return push + rub; }
+  Vector3 moment() const { return moment_of_push + moment_of_rub; }
+};
+
+/// The points whose hosts lie in one tile of a body, which one thread takes; of a body that does
+/// not deform all of them, which go with it.
+template <int D>
+struct SurfacePart {
+  int body = 0;
+  Index<D> tile{};
+  bool as_one = false;  // of a body that does not deform
+  // Of that body and tile, as long as patches stay what they are; or the first of the body.
+  std::uint32_t patch = 0;
+  std::uint32_t first_host = 0, hosts = 0, first_point = 0, points = 0;
+
+  std::vector<SurfaceTouch<D>> touches;                         // by point
+  std::vector<KeptOfContact<Vec<double, D>>> slips, new_slips;  // by point and opposite [m]
+  double stored_push = 0.0, stored_rub = 0.0;                   // in the springs [J]
+  std::vector<NearPoints> near_of;                              // by point and body
+  std::vector<std::uint32_t> near;                              // points
+  std::vector<FeltPoint<D>> felt;                               // by touches
+  // By the faces of the box in the coming step, with the moment about the origin [N, N m].
+  FaceImpulses<D> of_faces;
+  Vector3 moment_of_faces = Vector3::zero();
+  bool at_faces = false;  // is there any?
+};
+
+template <int D>
+struct Surfaces {
+  std::vector<GivenPoint<D>> given;  // until the bodies have rows
+  double spacing = 0.0;              // of the points of all bodies [m]
+  double onset = 0.0;  // way over which springs begin, that of a step at the start [m]
+  bool meet = false;   // do bodies touch each other by them?
+
+  std::vector<SurfacePart<D>> parts;            // by body, then by tile
+  std::vector<std::int32_t> part_of;            // of each patch; -1: it has none
+  std::vector<Host<D>> hosts;                   // by part
+  std::vector<ContactPoint<D>> points;          // by host
+  std::vector<Vec<double, D>> places;           // of the points, after the last step [m]
+  std::vector<KeptOfContact<double>> set_back;  // by how much they overlapped at the start [m]
+
+  std::vector<Vec<double, D>> places_of_lists;  // where points were when NearPoints were found
+  std::vector<HostMotion<D>> motions;           // of hosts in touch
+  std::vector<std::uint32_t> moving;            // the numbers of these
+  std::vector<std::uint32_t> place_of_motion;   // of each host, 1 + where that is, or 0
+  std::vector<ActingBetween<D>> between;        // bodies, by pair
+  std::vector<ActingOnBody> on_bodies;          // that do not deform, by body
+  std::vector<ActingOnHost<D>> on_hosts;        // by host; in the coming step
+  std::vector<std::uint32_t> place_on_hosts;    // scratch: of each host, 1 + where it is, or 0
+  double stored_push = 0.0, stored_rub = 0.0;   // in the springs after the last step [J]
+
+  bool exist() const { return !points.empty(); }
+};
+
+/// By how much the surface of a point is set back towards a opposite [m].
+template <int D>
+double set_back_of(const Surfaces<D>& surfaces, std::uint32_t point, Opposite opposite) {
+  if (surfaces.set_back.empty()) return 0.0;
+  const KeptOfContact<double> wanted{point, opposite, 0.0};
+  const auto at = std::ranges::lower_bound(surfaces.set_back, wanted, std::less<>{});
+  const bool found = at != surfaces.set_back.end() && !(wanted < *at);
+  return found ? at->value : 0.0;
+}
+
+}  // namespace mpm

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The contact points of a case's bodies on nodes of their own, each carried by a particle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mpm3dpp.base.frames import MATERIAL
+from mpm3dpp.shapes.contact_points import (
+    ContactPoints,
+    points_of_ball,
+    points_of_particles,
+    points_of_shape,
+)
+
+from .grid import CONTACT
+from .load_pieces import nearest_particles
+
+if TYPE_CHECKING:
+    from mpm3dpp.fill.parts import FilledPart, Particles
+
+    from .case import Case
+
+Array = NDArray[np.float64]
+
+FINER = {2: 4.0, 3: 2.0}
+"""Contact points along the edge of a particle, in 2D and 3D: rows have bumps that stop a roll."""
+
+
+def point_spacing(case: Case, parts: Iterable[FilledPart]) -> float | None:
+    """Return the distance of the contact points of all bodies [m]; None where nothing meets.
+
+    That of the particles of the finest body, over `FINER`.
+    """
+    own = [part.spacing for part in parts if case.parts()[part.name].frame == MATERIAL]
+    if not own or not (case.contact_enabled or CONTACT in case.grid.walls):
+        return None
+    return min(own) / FINER[case.grid.dimension]
+
+
+def has_surface(case: Case, name: str) -> bool:
+    """Return whether the bodies of an entry touch others by contact points."""
+    return case.parts()[name].frame == MATERIAL or (case.contact_enabled and case.is_rigid(name))
+
+
+def add_surfaces(
+    core: Any, case: Case, part: FilledPart, number: int, particles: Particles, spacing: float
+) -> None:
+    """Give the core the contact points of the bodies of an entry.
+
+    Args:
+        core: of the simulation.
+        case: of which the entry is.
+        part: the entry.
+        number: of its first body in the core.
+        particles: of all its bodies.
+        spacing: of the points [m].
+
+    Raises:
+        CaseError: a part of the surface has no particle near it.
+    """
+    ends = np.cumsum(particles.counts)
+    for k, (begin, end) in enumerate(zip(ends - particles.counts, ends, strict=True)):
+        positions = particles.positions[begin:end]
+        if part.balls is None:
+            points = _points(case, part, positions, spacing)
+        else:
+            points = points_of_ball(part.balls[0][k], float(part.balls[1][k]), spacing)
+        core.add_surface(number + k, *_carried(case, part, positions, points), spacing)
+
+
+def _points(case: Case, part: FilledPart, positions: Array, spacing: float) -> ContactPoints:
+    shape = case.body[part.name].shape
+    if shape is not None:
+        return points_of_shape(shape, spacing)
+    return points_of_particles(positions, part.spacing, spacing)
+
+
+def _carried(
+    case: Case, part: FilledPart, positions: Array, points: ContactPoints
+) -> tuple[list[int], Array, Array]:
+    """Return the particles nearest to the points, the ways from them, and the areas."""
+    which, owner = nearest_particles(positions, points.places, part.spacing)
+    shared = np.bincount(which, minlength=len(points.places))
+    if not shared.all():
+        share = points.areas[shared == 0].sum() / points.areas.sum()
+        rule = f"has no particles near {share:.0%} of its surface: it is too thin for its spacing"
+        remedy = "give a smaller grid.cell_size or more particles_per_cell"
+        raise case.error(case.part_path(part.name), rule, remedy)
+    offsets = points.places[which] - positions[owner]
+    areas = points.areas[which] / shared[which]
+    return owner.tolist(), np.ascontiguousarray(offsets), areas

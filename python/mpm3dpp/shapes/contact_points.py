@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Contact points of a body: points of its drawn surface, evenly spread, half a spacing inside it.
+
+They lie on the shape and not on its filling: a ball filled by a lattice is round. Where two faces
+meet each of them has the point at the edge, of which one stays.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .base import Shape
+from .particle_faces import faces
+from .surface_parts import Surface, circle, sphere
+from .surfaces import surface
+
+Array = NDArray[np.float64]
+
+_SAME_POINT = 0.6  # Spacings: two points of different faces that are nearer are one.
+_ONE_FACE = 0.9  # Cosine of the angle up to which two normals are those of one face.
+
+
+class ContactPoints(NamedTuple):
+    """Points under a surface.
+
+    Attributes:
+        places: [m], shape (n, D).
+        areas: of their shares of the surface [m^2; in 2D m times 1 m], shape (n,).
+    """
+
+    places: Array
+    areas: Array
+
+
+def points_of_shape(shape: Shape, spacing: float) -> ContactPoints:
+    """Return the contact points of a shape.
+
+    Args:
+        shape: any.
+        spacing: about the distance of the points [m].
+    """
+    return _inside(surface(shape, "all", spacing), spacing)
+
+
+def points_of_ball(centre: Array, radius: float, spacing: float) -> ContactPoints:
+    """Return those of a disc or a ball.
+
+    Args:
+        centre: [m], shape (D,).
+        radius: [m].
+        spacing: about the distance of the points [m].
+    """
+    drawn = (circle if len(centre) == 2 else sphere)(radius, spacing)
+    return _inside(Surface(drawn.points + centre, drawn.areas), spacing)
+
+
+def points_of_particles(positions: Array, edge: float, spacing: float) -> ContactPoints:
+    """Return those of a body that is known by its particles alone.
+
+    Args:
+        positions: of its particles [m], shape (n, D).
+        edge: of the particles' cubes [m].
+        spacing: about the distance of the points [m].
+    """
+    drawn = faces(positions, edge, "all")
+    each = max(1, math.ceil(edge / spacing - 1e-6))
+    steps = (np.arange(each) + 0.5) / each - 0.5
+    points, areas = [drawn.points], [drawn.areas]
+    if each > 1:
+        points, areas = [], []
+        axes = np.argmax(np.abs(drawn.areas), axis=1)
+        dimension = positions.shape[1]
+        for shift in np.stack(
+            [x.ravel() for x in np.meshgrid(*[steps] * (dimension - 1), indexing="ij")], axis=1
+        ):
+            moved = drawn.points.copy()
+            for k in range(dimension):
+                across = [d for d in range(dimension) if d != k]
+                own = axes == k
+                for d, by in zip(across, shift, strict=True):
+                    moved[own, d] += by * edge
+            points.append(moved)
+            areas.append(drawn.areas / each ** (dimension - 1))
+    return _inside(Surface(np.concatenate(points), np.concatenate(areas)), spacing)
+
+
+def _inside(drawn: Surface, spacing: float) -> ContactPoints:
+    """Return points half a spacing behind a surface, one where faces share it."""
+    from scipy.spatial import cKDTree
+
+    areas = np.linalg.norm(drawn.areas, axis=1)
+    normals = drawn.areas / areas[:, None]
+    places = drawn.points - 0.5 * spacing * normals
+    pairs = cKDTree(places).query_pairs(_SAME_POINT * spacing, output_type="ndarray")
+    kept = np.ones(len(places), dtype=bool)
+    apart = np.einsum("ij,ij->i", normals[pairs[:, 0]], normals[pairs[:, 1]]) < _ONE_FACE
+    for first, second in pairs[apart][np.lexsort(pairs[apart].T[::-1])].tolist():
+        if kept[first]:
+            kept[second] = False
+    return ContactPoints(places[kept], areas[kept])

@@ -1,0 +1,363 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Contact between surfaces of bodies on nodes of their own: hits, friction, rolls, restitution."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mpm3dpp import Case, Simulation, _core
+from worlds import check_worlds
+
+COLUMNS = list(_core.part_columns)
+FRAME = {"frame": "material"}
+RIGID = {"density": 2000.0, "strength": {"rigid": {}}}
+
+
+def elastic(E: float, nu: float, density: float) -> dict[str, Any]:
+    return {"density": density, "strength": {"elastic": {"E": E, "nu": nu}}}
+
+
+def part(simulation: Simulation, name: str, body: int = 0) -> float:
+    """A column of the table of parts."""
+    return float(np.array(simulation.core.part_sums()[1])[body][COLUMNS.index(name)])
+
+
+def run(case: Case, every: int = 50, look: Any = None) -> tuple[Simulation, dict, list]:
+    """Run a case; return it, the columns of all its steps, and what `look` sees."""
+    simulation, seen = Simulation(case), []
+    core, end = simulation.core, case.run.end_time
+    rows = [core.history()]
+    while simulation.time < end:
+        simulation.advance(every, end)
+        rows.append(core.history())
+        if look is not None:
+            seen.append((simulation.time, look(simulation)))
+    columns = dict(zip(core.history_columns, np.concatenate(rows).T, strict=True))
+    largest = max(columns["kinetic"].max(), columns["internal"].max())
+    assert np.abs(columns["residual"]).max() < 1e-12 * largest
+    return simulation, columns, seen
+
+
+def test_two_balls_hit_as_hertz_says() -> None:
+    """Chung & Ooi (2011), test 1: 10.697 kN for 40.34 us, all energy kept.
+
+    The contact circle is .117 of the radius, so that Hertz's half-space is 2 to 4 % off (the limit
+    of fine cells is 1.03 of his force).
+    """
+    radius, away = 0.01, 1e-6
+
+    def ball(side: float) -> dict[str, Any]:
+        return {
+            "material": "glass",
+            "shape": {"sphere": {"centre": [side * (radius + away), 0, 0], "radius": radius}},
+            "velocity": [-10.0 * side, 0.0, 0.0],
+            **FRAME,
+        }
+
+    case = Case.model_validate(
+        {
+            "grid": {"dimension": 3, "cell_size": radius / 6},
+            "run": {"end_time": 7e-5},
+            "material": {"glass": elastic(48e9, 0.2, 2800.0)},
+            "body": {"left": ball(-1.0), "right": ball(1.0)},
+        }
+    )
+    simulation, columns, seen = run(case, 1, lambda s: part(s, "contact_force_x", 1))
+    times, forces = np.array(seen).T
+    during = times[forces > 0.01 * forces.max()]
+    assert forces.max() == pytest.approx(10.697e3, rel=0.04)
+    # From a hundredth of the peak to that again Hertz's lasts .9685 of it all.
+    assert during[-1] - during[0] == pytest.approx(0.9685 * 40.34e-6, rel=0.04)
+    assert part(simulation, "velocity_x", 1) / 10.0 > 0.99
+    total = columns["kinetic"] + columns["internal"]
+    assert total[-1] / total[0] == pytest.approx(1.0, abs=0.005)
+    assert np.abs(columns["momentum_x"]).max() < 1e-12 * 10.0 * part(simulation, "mass")
+
+
+def oblique(cells: int, friction: float, plate: bool) -> tuple[np.ndarray, float, float]:
+    """An aluminium ball at 60 degrees, 3.9 m/s (Chung & Ooi 2011, test 4): the impulse over the
+    normal one, restitution, and the spin over that of a ball that slides all the time."""
+    E, nu, density, radius, speed = 70e9, 0.33, 2700.0, 2.5e-3, 3.9
+    down, along = 0.5 * speed, speed * np.sqrt(0.75)
+    h, mass = radius / cells, density * 4 / 3 * np.pi * radius**3
+    approach = (15 * mass * down**2 / (16 * np.sqrt(radius) * E / (1 - nu**2))) ** 0.4
+    ball = {
+        "material": "metal",
+        "shape": {"sphere": {"centre": [0.13 * h, radius * 1.0002, 0.07 * h], "radius": radius}},
+        "velocity": [along, -down, 0.0],
+        **FRAME,
+    }
+    wide = (2 * cells) * h
+    grid: dict[str, Any] = {"dimension": 3, "cell_size": h}
+    bodies = {"ball": ball}
+    if plate:
+        box = {"box": {"lower": [-wide, -2 * h, -wide], "upper": [wide, 0, wide]}}
+        bodies["plate"] = {"material": "rigid", "shape": box, "motion": "fixed"}
+    else:
+        corners = {"lower": [-wide, 0, -wide], "upper": [wide, 2 * wide, wide]}
+        grid["box"] = {**corners, "walls": {"y_min": "contact"}, "friction": {"y_min": friction}}
+    case = Case.model_validate(
+        {
+            "grid": grid,
+            "run": {"end_time": 1.6 * 2.943 * approach / down},
+            "contact": {"friction": friction},
+            "material": {"metal": elastic(E, nu, density), "rigid": RIGID},
+            "body": bodies,
+        }
+    )
+    simulation, _, _ = run(case)
+    velocity = np.array([part(simulation, f"velocity_{a}") for a in "xyz"])
+    restitution = velocity[1] / down
+    change = velocity - [along, -down, 0.0]
+    law = 2.5 * friction * (1 + restitution) * down / radius
+    spin = -part(simulation, "spin_z")
+    return change / change[1], restitution, spin / law if friction else spin * radius / speed
+
+
+def test_a_ball_slides_on_a_wall_by_coulombs_law() -> None:
+    impulse, restitution, spin = oblique(6, 0.092, plate=False)
+    assert -impulse[0] / 0.092 == pytest.approx(1.0, abs=0.005)
+    assert spin == pytest.approx(1.0, abs=0.02)
+    assert 0.985 < restitution < 1.003
+
+
+def test_a_plate_without_friction_does_not_drag() -> None:
+    """The updated frame: .033 of the normal impulse, restitution 1.02."""
+    impulse, restitution, spin = oblique(6, 0.0, plate=True)
+    assert abs(impulse[0]) < 0.002 > abs(impulse[2])
+    assert 0.985 < restitution < 1.003
+    assert abs(spin) < 0.01
+
+
+def test_a_ball_slides_on_a_plate_by_coulombs_law() -> None:
+    impulse, _, spin = oblique(6, 0.092, plate=True)
+    assert -impulse[0] / 0.092 == pytest.approx(1.0, abs=0.01)
+    assert spin == pytest.approx(1.0, abs=0.03)
+
+
+@pytest.mark.parametrize("plate", [False, True], ids=["wall", "plate"])
+@pytest.mark.parametrize("cells", [2.5, 4, 10])
+def test_a_disc_rolls_down_a_slope(cells: float, plate: bool) -> None:
+    """At 2/3 g sin (the updated frame: .76, .89, .975), from .3 of the way on, within 1 %."""
+    h, E, density, slope = 1e-3, 1e6, 1000.0, np.radians(20.0)
+    radius, g = cells * h, 1e-5 * E / (density * h)
+    exact = 2.0 / 3.0 * g * np.sin(slope)
+    end = float(np.sqrt(2 * 0.6 * 2 * np.pi * radius / exact))
+    disc = {"material": "m", "shape": {"disc": {"centre": [0, radius], "radius": radius}}, **FRAME}
+    far = np.ceil(3 * cells) * h
+    bodies = {"disc": disc}
+    grid: dict[str, Any] = {"dimension": 2, "cell_size": h}
+    if plate:
+        box = {"box": {"lower": [-far, -4 * h], "upper": [3 * far, 0.0]}}
+        bodies["plate"] = {"material": "rigid", "shape": box, "motion": "fixed"}
+    else:
+        corners = {"lower": [-far, 0], "upper": [3 * far, 2 * far]}
+        grid["box"] = {**corners, "walls": {"y_min": "contact"}, "friction": {"y_min": 0.5}}
+    case = Case.model_validate(
+        {
+            "grid": grid,
+            "run": {"end_time": end, "gravity": [g * np.sin(slope), -g * np.cos(slope)]},
+            "contact": {"friction": 0.5},
+            "material": {"m": elastic(E, 0.3, density), "rigid": RIGID},
+            "body": bodies,
+        }
+    )
+    _, _, seen = run(case, 200, lambda s: part(s, "velocity_x"))
+    times, speeds = np.array(seen).T
+    later = times > 0.3 * end
+    assert np.polyfit(times[later], speeds[later], 1)[0] == pytest.approx(exact, rel=0.01)
+
+
+def block_on_a_slope(angle: float) -> tuple[float, float]:
+    """A block of 8 x 4 cells, friction .3, gravity brought on slowly: by how much of its length it
+    goes in the time in which it would fall that, and its acceleration over the law's."""
+    h, E, density, g, mu = 1e-3, 2e5, 1000.0, 9.81, 0.3
+    slope = np.radians(angle)
+    ramp = 20.0 * 8 * h / np.sqrt(E / density)
+    end = float(ramp + np.sqrt(2 * 8 * h / g))
+
+    def brought_on(value: float) -> dict[str, Any]:
+        return {"times": [0.0, ramp, 1e3], "values": [0.0, value, value]}
+
+    corners = {"lower": [-20 * h, 0], "upper": [60 * h, 20 * h]}
+    gravity = [brought_on(g * np.sin(slope)), brought_on(-g * np.cos(slope))]
+    box = {"box": {"lower": [0, 0], "upper": [8 * h, 4 * h]}}
+    walls = {"walls": {"y_min": "contact"}, "friction": {"y_min": mu}}
+    case = Case.model_validate(
+        {
+            "grid": {"dimension": 2, "cell_size": h, "box": {**corners, **walls}},
+            "run": {"end_time": end, "gravity": gravity},
+            "material": {"m": elastic(E, 0.3, density)},
+            "body": {"block": {"material": "m", "shape": box, **FRAME}},
+        }
+    )
+    _, _, seen = run(case, 100, lambda s: (part(s, "centre_x"), part(s, "velocity_x")))
+    times = np.array([t for t, _ in seen])
+    places, speeds = np.array([x for _, x in seen]).T
+    later = times > ramp
+    law = g * (np.sin(slope) - mu * np.cos(slope))
+    gone = (places[-1] - places[later][0]) / (8 * h)
+    return gone, float(np.polyfit(times[later], speeds[later], 1)[0] / law)
+
+
+def test_a_block_stays_below_the_angle_of_friction_and_slides_above() -> None:
+    """It holds up to 16.7 degrees; in the updated frame it creeps by 1e-3 of its length."""
+    assert abs(block_on_a_slope(15.0)[0]) < 1e-6
+    assert block_on_a_slope(20.0)[1] == pytest.approx(1.0, rel=0.02)
+
+
+@pytest.mark.parametrize("cells", [6, 20])
+def test_a_soft_block_hits_three_times(cells: int) -> None:
+    """Kinetic, internal and springs' energy less the work of gravity: .36 to .5 of it is left of
+    six cells in the updated frame."""
+    h, E, density = 1e-3, 1e6, 1000.0
+    length, g = cells * h, 400.0 * 6 / cells
+    end = 3 * 2.1 / g + 0.5 / g + 6 * length / np.sqrt(E / density)
+    shape = {"box": {"lower": [-length / 2, 0.5 * h], "upper": [length / 2, 0.5 * h + length]}}
+    corners = {"lower": [-30 * h, 0], "upper": [30 * h, 60 * h]}
+    case = Case.model_validate(
+        {
+            "grid": {
+                "dimension": 2,
+                "cell_size": h,
+                "box": {**corners, "walls": {"y_min": "contact"}},
+            },
+            "run": {"end_time": end, "gravity": [0.0, -g]},
+            "material": {"m": elastic(E, 0.3, density)},
+            "body": {"b": {"material": "m", "shape": shape, "velocity": [0.0, -1.0], **FRAME}},
+        }
+    )
+    _, columns, _ = run(case)
+    energy = columns["kinetic"] + columns["internal"] + columns["springs"] - columns["external"]
+    assert energy[-1] / energy[0] > 0.97
+    assert energy.max() / energy[0] < 1.005
+
+
+@pytest.mark.parametrize("wall", [False, True], ids=["balls", "wall"])
+@pytest.mark.parametrize("given", [0.3, 0.6, 0.9])
+def test_restitution_is_what_is_given(given: float, wall: bool) -> None:
+    radius, speed = 0.01, 1.0
+    h, away = radius / 4, 1e-5
+
+    def ball(side: float) -> dict[str, Any]:
+        return {
+            "material": "m",
+            "shape": {"sphere": {"centre": [side * (radius + away), 0, 0], "radius": radius}},
+            "velocity": [-side * speed, 0.0, 0.0],
+            **FRAME,
+        }
+
+    grid: dict[str, Any] = {"dimension": 3, "cell_size": h}
+    bodies = {"right": ball(1.0)}
+    if wall:
+        far = 8 * radius
+        corners = {"lower": [0, -far, -far], "upper": [far, far, far]}
+        grid["box"] = {**corners, "walls": {"x_min": "contact"}}
+    else:
+        bodies["left"] = ball(-1.0)
+    case = Case.model_validate(
+        {
+            "grid": grid,
+            "run": {"end_time": 5.3e-3},
+            "contact": {"restitution": given},
+            "material": {"m": elastic(1e7, 0.3, 1000.0)},
+            "body": bodies,
+        }
+    )
+    simulation, columns, _ = run(case)
+    assert part(simulation, "velocity_x") / speed == pytest.approx(given, rel=0.02)
+    lost = columns["contact"][-1] / columns["kinetic"][0]
+    assert lost == pytest.approx(1 - given**2, abs=0.03)  # The rest vibrates on.
+
+
+BLOCKS = """
+[grid]
+dimension = DIMENSION
+cell_size = "2 mm"
+box = { lower = LOWER, upper = UPPER, walls = { y_min = "contact" }, friction = { y_min = 0.4 } }
+[run]
+end_time = "1 s"
+gravity = GRAVITY
+[contact]
+friction = 0.3
+restitution = 0.8
+[material.soft]
+density = 1000
+strength = { j2 = { E = "1 MPa", nu = 0.3, Y0 = "20 kPa", H = "50 kPa" } }
+[material.rigid]
+density = 3000
+strength = { rigid = {} }
+[body.one]
+material = "soft"
+frame = "material"
+particles_per_cell = 2
+shape = { box = { lower = ONE, upper = TO } }
+velocity = FAST
+[body.two]
+material = "soft"
+frame = "material"
+particles_per_cell = 2
+shape = { box = { lower = TWO, upper = UNTIL } }
+[body.three]
+material = "rigid"
+shape = { box = { lower = THREE, upper = END } }
+"""
+
+
+def blocks(dimension: int) -> str:
+    """Return a case of a block that hits another askew, and a rigid one, on a wall."""
+    text = BLOCKS.replace("DIMENSION", str(dimension))
+    for word, value in {
+        "LOWER": [-0.04, 0.0, -0.04],
+        "UPPER": [0.06, 0.06, 0.04],
+        "GRAVITY": [0.0, -9.81, 0.0],
+        "ONE": [-0.012, 0.0, -0.004],
+        "TO": [0.0, 0.008, 0.004],
+        "FAST": [4.0, -0.2, 0.3],
+        "TWO": [0.0, 0.002, -0.002],
+        "UNTIL": [0.008, 0.012, 0.006],
+        "THREE": [0.008, 0.0, -0.004],
+        "END": [0.016, 0.01, 0.004],
+    }.items():
+        text = text.replace(f"= {word}", f"= {value[:dimension]}")
+    return text
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_another_world_is_the_same(dimension: int) -> None:
+    case = Case.from_text(blocks(dimension))
+    check_worlds(case, 150 if dimension == 2 else 60, "", meet=False)
+    simulation = Simulation(case)
+    simulation.advance(60)
+    assert len(simulation.core.contact_pairs()) >= 2
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_same_bits(dimension: int, tmp_path: Any) -> None:
+    """With any number of threads, stages fused or not, and after a restart amid the contact."""
+    case = Case.from_text(blocks(dimension))
+    one = state(Simulation(case, threads=1))
+    assert one == state(Simulation(case, threads=3))
+    assert one == state(Simulation(case, threads=1, fused=False))
+    first = Simulation(case, threads=2)
+    first.advance(30)
+    first.save(tmp_path / "state.zip")
+    again = Simulation(case, threads=1)
+    again.restore(tmp_path / "state.zip")
+    assert state(first) == one
+    assert one == state(again)
+
+
+def state(simulation: Simulation) -> list[bytes]:
+    """Return the bytes of all columns, of the history's last row and of pairs, after 60 steps."""
+    simulation.advance(60 - simulation.step)
+    core = simulation.core
+    columns = [
+        core.column(b, column.name) for b in range(core.body_count) for column in core.columns(b)
+    ]
+    pairs = [[*pair.force, *pair.impulse, pair.friction_work] for pair in core.contact_pairs()]
+    numbers = [*columns, core.history()[-1], np.array(core.part_sums()[1]), np.array(pairs)]
+    return [c.tobytes() for c in numbers]
