@@ -121,8 +121,9 @@ void def_acting(SimulationClass& simulation) {
              set_pair_law(s.domain, a, b, {mu, false, 0.0, restitution});
            }),
            nb::arg("body_a"), nb::arg("body_b"), nb::arg("mu"), nb::arg("restitution") = 1.0)
-      .def("bond",
-           of_any([](auto& s, int a, int b) { set_pair_law(s.domain, a, b, {0.0, true, 0.0, 1.0}); }),
+      .def("bond", of_any([](auto& s, int a, int b) {
+             set_pair_law(s.domain, a, b, {0.0, true, 0.0, 1.0});
+           }),
            nb::arg("body_a"), nb::arg("body_b"))
       .def("press", of_any([](auto& s, int a, int b, double depth) { press(s, a, b, depth); }),
            nb::arg("body_a"), nb::arg("body_b"), nb::arg("depth"))

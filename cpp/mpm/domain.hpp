@@ -113,12 +113,10 @@ struct Domain {
   bool has_prescribed() const { return !prescribed.empty(); }
   bool has_loads() const { return !loads.empty(); }
   bool has_body_forces() const { return !body_forces.empty(); }
+  /// Do bodies meet at nodes?
   bool has_contact() const {
-    return may_meet() && !surfaces.meet;
-  }
-  /// The same at nodes, or where surfaces touch.
-  bool may_meet() const {
-    return contact_settings.enabled && !contact_settings.bonded && bodies.size() > 1;
+    return contact_settings.enabled && !contact_settings.bonded && bodies.size() > 1 &&
+           !surfaces.meet;
   }
   bool has_springs() const { return has_contact() && may_spring(contact_settings.response); }
   /// f(pool, row) for the particles that take part, in the order of the lists.

@@ -49,11 +49,7 @@ def test_a_case_without_them_is_one() -> None:
     ("before", "after", "said"),
     [
         (GRID, f'{GRID}basis = "linear"\n', "needs gradients without jumps"),
-        (
-            GRID,
-            f'{GRID}box = {{ {BOX}, walls = "slip" }}\n',
-            'walls of grid.box that are "contact" alone',
-        ),
+        (GRID, f'{GRID}box = {{ {BOX}, walls = "slip" }}\n', "walls of grid.box that are"),
         (GRID, f"{GRID}outflow_box = {{ {BOX} }}\n", "grid.outflow_box"),
         (GRID, f"{GRID}coarsening = {{ tiles = 9, times = 1 }}\n", "grid.coarsening"),
         ("enabled = false", "", "contact with b, which has another, yet"),
@@ -79,18 +75,33 @@ def test_what_they_do_not_go_with(before: str, after: str, said: str) -> None:
         Case.from_text(text)
     messages = [str(told.value), *map(str, getattr(told.value, "others", []))]
     [about] = [m for m in messages if 'body.a.frame = "material"' in m]
-    assert re.search(
-        rf"(does not go with|goes with|needs) .*{re.escape(said.removeprefix('needs '))}", about
-    )
+    rule = rf"(does not go with|goes with|needs) .*{re.escape(said.removeprefix('needs '))}"
+    assert re.search(rule, about)
     assert ";" in about  # and a remedy
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ('normal = "pair"', "contact.normal"),
+        ('gap_distance = "1 um"', "contact.gap_distance"),
+        ('response = "impulses"', "contact.response"),
+        ('interference = "pressed"', 'contact.interference = "pressed"'),
+        ("[[contact.pair]]\nbodies = ['a', 'b']\nbonded = true", "bonded bodies yet"),
+    ],
+)
+def test_what_is_for_contact_at_nodes_is_not_for_them(given: str, said: str) -> None:
+    both = CASE.replace('[body.b]\nmaterial = "m"\n', f'[body.b]\nmaterial = "m"\n{A}')
+    with pytest.raises(CaseError) as told:
+        Case.from_text(both.replace("enabled = false", given))
+    messages = [str(told.value), *map(str, getattr(told.value, "others", []))]
+    assert any('body.a.frame = "material"' in m and said in m and ";" in m for m in messages)
 
 
 def test_restitution_is_for_them() -> None:
     """Other bodies lose what their transfers take, and no more by it."""
     text = CASE.replace(A, "").replace("enabled = false", "restitution = 0.5")
-    with pytest.raises(
-        CaseError, match=r'contact\.restitution is for bodies with frame = "material"'
-    ):
+    with pytest.raises(CaseError, match=r"contact\.restitution is for bodies with frame ="):
         Case.from_text(text)
     with pytest.raises(CaseError, match=r"contact\.restitution = 1\.5 must"):
         Case.from_text(text.replace("0.5", "1.5"))

@@ -88,6 +88,23 @@ std::size_t particle_count(const Domain<D>& domain) {
   return count;
 }
 
+namespace {
+
+template <int D>
+std::size_t bytes_of_surfaces(const Surfaces<D>& surfaces) {
+  const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  std::size_t parts = size(surfaces.parts);
+  for (const SurfacePart<D>& part : surfaces.parts)
+    parts += size(part.touches) + size(part.slips) + size(part.new_slips) + size(part.near_of) +
+             size(part.near) + size(part.felt);
+  return parts + size(surfaces.part_of) + size(surfaces.hosts) + size(surfaces.points) +
+         size(surfaces.places) + size(surfaces.set_back) + size(surfaces.places_of_lists) +
+         size(surfaces.motions) + size(surfaces.place_of_motion) + size(surfaces.between) +
+         size(surfaces.on_hosts) + size(surfaces.place_on_hosts);
+}
+
+}  // namespace
+
 template <int D>
 Bytes bytes_of(const Simulation<D>& simulation) {
   const Domain<D>& domain = simulation.domain;
@@ -96,6 +113,7 @@ Bytes bytes_of(const Simulation<D>& simulation) {
   r.particles += domain.list_scratch.bytes();
   r.grid = bytes_of(domain.grid);
   if (domain.has_contact()) r.contact = bytes_of(domain.contact);
+  r.contact += bytes_of_surfaces(domain.surfaces);
   r.other = domain.sums.capacity() * sizeof(PatchSums<D>) + simulation.history.bytes() +
             domain.part_energies.capacity() * sizeof(PartEnergies) +
             domain.face_parts.capacity() * sizeof(FaceImpulses<D>);

@@ -45,7 +45,7 @@ std::vector<Forces> forces_on_groups(const Domain<D>& domain) {
   const auto on = [&](int body) -> Forces& {
     return forces[domain.group_of[static_cast<std::size_t>(body)]];
   };
-  if (domain.may_meet())
+  if (domain.has_contact() || domain.surfaces.meet)
     for (const PairRecord& pair : group_pairs(domain)) {
       const Vector3 force{pair.force[0], pair.force[1], pair.force[2]};
       on(pair.a).contact += force;

@@ -1,5 +1,7 @@
 #include "mpm/run/part_sums.hpp"
 
+#include <numeric>
+
 #include "mpm/comm/all_sums.hpp"
 #include "mpm/step/kept_nodes.hpp"
 
@@ -102,6 +104,13 @@ std::vector<PartSums> part_sums(Domain<D>& domain, const Grouping& grouping, Sum
   return parts;
 }
 
+template <int D>
+std::vector<PartSums> sums_of_bodies(Domain<D>& domain, SumsOf of) {
+  std::vector<std::size_t> numbers(domain.bodies.size());
+  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+  return part_sums(domain, Grouping{numbers, numbers.size()}, of);
+}
+
 AngularTotals angular_totals(const std::vector<PartSums>& parts) {
   AngularTotals totals;
   for (const PartSums& part : parts) {
@@ -124,5 +133,7 @@ std::vector<double> balance_row(const AngularLedger& ledger, const AngularTotals
 
 template std::vector<PartSums> part_sums<2>(Domain<2>&, const Grouping&, SumsOf);
 template std::vector<PartSums> part_sums<3>(Domain<3>&, const Grouping&, SumsOf);
+template std::vector<PartSums> sums_of_bodies<2>(Domain<2>&, SumsOf);
+template std::vector<PartSums> sums_of_bodies<3>(Domain<3>&, SumsOf);
 
 }  // namespace mpm

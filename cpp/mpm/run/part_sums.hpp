@@ -82,6 +82,10 @@ std::vector<PartSums> part_sums(Domain<D>& domain) {
   return part_sums(domain, Grouping{domain.group_of, domain.part_energies.size()});
 }
 
+/// Of each body by itself.
+template <int D>
+std::vector<PartSums> sums_of_bodies(Domain<D>& domain, SumsOf of);
+
 /// Angular momentum about the origin of all, and of bodies whose motion is prescribed [N m s].
 struct AngularTotals {
   Vector3 all = Vector3::zero(), prescribed = Vector3::zero();

@@ -76,7 +76,7 @@ void prepare(Simulation<D>& simulation) {
   check_setting(!domain.bodies.empty(), "there is no body");
   check_bodies(domain);
   simulation.phase = Phase::broken;  // until all is done
-  domain.surfaces.meet = domain.may_meet() && !domain.surfaces.given.empty();
+  domain.surfaces.meet = domain.has_contact() && !domain.surfaces.given.empty();
   domain.grid.partition.shares_tiles = domain.has_contact();
   add_contact_columns(domain);
   find_held_bodies(simulation);

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "mpm/grid/shared_nodes.hpp"
-#include "mpm/math/eigen.hpp"
+#include "mpm/run/kept_spins.hpp"
 #include "mpm/run/part_sums.hpp"
 #include "mpm/schedule/choose.hpp"
 #include "mpm/schedule/scatter.hpp"
@@ -13,7 +13,6 @@
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/transfer/flip.hpp"
 #include "mpm/step/transfer/mapping.hpp"
-#include "mpm/surfaces/restitution.hpp"
 
 namespace mpm {
 namespace {
@@ -116,32 +115,10 @@ double to_end_of_step(const Domain<D>& domain, const Patch<D>& patch) {
   return acts > 0.0 ? 0.5 * domain.time_step / acts : 0.0;
 }
 
-/// One body after another, and each by itself.
-struct EachBody {
-  std::vector<std::size_t> numbers;
-
-  explicit EachBody(std::size_t count) : numbers(count) {
-    for (std::size_t b = 0; b < count; ++b) numbers[b] = b;
-  }
-  Grouping grouping() const { return {numbers, numbers.size()}; }
-};
-
-/// The least principal moment of inertia [kg m^2]; in 2D that about z.
-template <int D>
-double least_moment(const Matrix3& inertia) {
-  if constexpr (D == 2) return inertia[2][2];
-  Sym<double, 3> tensor;
-  for (int i = 0; i < 3; ++i)
-    for (int j = i; j < 3; ++j) tensor(i, j) = inertia[i][j];
-  const Eigen<double, 3> principal = eigen(tensor);
-  return std::min({principal.value[0], principal.value[1], principal.value[2]});
-}
-
 /// The nodes' velocities by the rigid motion that each body has by its particles.
 template <int D>
 void begin_with_rigid_motions(Domain<D>& domain, const std::vector<bool>& bodies) {
-  const EachBody each(domain.bodies.size());
-  const std::vector<PartSums> parts = part_sums(domain, each.grouping(), SumsOf::particles);
+  const std::vector<PartSums> parts = sums_of_bodies(domain, SumsOf::particles);
   for_each_meant(domain, bodies, [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
     const NodeBlock<D> block = domain.grid.block(p);
@@ -154,45 +131,6 @@ void begin_with_rigid_motions(Domain<D>& domain, const std::vector<bool>& bodies
       for (int a = 0; a < D; ++a) block.records[n][velocity_at + a] = m > 0.0 ? v[a] : 0.0;
     }
   });
-}
-
-// A body whose particles have less inertia about some axis than this share of D has none that could
-// be told from that of its nodes, and one with more than that share needs nothing.
-constexpr double least_inertia = 3.0, most_inertia = 200.0;
-
-/// The bodies that turn with more inertia than their particles have.
-template <int D>
-void list_kept_spins(Domain<D>& domain) {
-  const EachBody each(domain.bodies.size());
-  const std::vector<PartSums> parts = part_sums(domain, each.grouping(), SumsOf::particles);
-  for (std::size_t b = 0; b < parts.size(); ++b) {
-    if (!domain.bodies[b].keeps_nodes()) continue;
-    KeptSpin turning;
-    turning.body = static_cast<int>(b);
-    turning.mass = parts[b].mass;
-    turning.excess = 0.5 * turning.mass * std::pow(domain.grid.cell_size, 2);
-    const double least = least_moment<D>(parts[b].inertia) / turning.excess;
-    const bool turns = least >= least_inertia && least <= most_inertia;
-    if (!turns) turning.excess = 0.0;
-    // Restitution asks how all of them move.
-    if (turns || restitution_takes(domain.contact_settings)) domain.kept_spins.push_back(turning);
-  }
-}
-
-/// How they turn, by what their nodes have.
-template <int D>
-void find_kept_spins(Domain<D>& domain) {
-  for (KeptSpin& turning : domain.kept_spins) turning.begun = false;
-  const EachBody each(domain.bodies.size());
-  const std::vector<PartSums> nodes = part_sums(domain, each.grouping());
-  for (KeptSpin& turning : domain.kept_spins) {
-    const PartSums& part = nodes[static_cast<std::size_t>(turning.body)];
-    turning.begun = true;
-    turning.centre = part.centre;
-    turning.spin = spin_of(part, D);
-    turning.of_nodes = part.angular_momentum;
-    turning.momentum = turning.of_nodes - turning.excess * turning.spin;
-  }
 }
 
 void check_frame(bool holds, const char* sentence) {

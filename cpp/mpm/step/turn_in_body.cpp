@@ -23,14 +23,61 @@ void add_nodes(Domain<D>& domain, std::size_t p, const Vector3& about, TurningSu
   const NodeBlock<D> block = domain.grid.block(p);
   double own[BlockShape<D>::nodes_max];
   own_nodes(domain.grid, patch, own);
+  const Vector3 corner = place_of(domain.grid, patch, patch.shape.low) - about;
+  const Index<D>& nodes = patch.shape.nodes;
+  Vector3 first = Vector3::zero(), momentum = first, angular = first, force = first, moment = first;
+  double mass = 0.0, second[3][3] = {};
+  Index<D> at{};
   for (int n = 0; n < block.count; ++n) {
-    const double m = own[n] * block.records[n][mass_at];
-    if (!(m > 0.0)) continue;
-    const Vector3 r = place_of_kept(domain.grid, patch, block, n) - about;
-    const Vector3 f = in_space<D>(block.vector(n, force_at));
-    sums.motion.add(m, r, in_space<D>(block.vector(n, velocity_at)));
-    sums.moment += cross(r, f);
-    sums.force += f;
+    const double* const numbers = block.records[n];
+    if (const double m = own[n] * numbers[mass_at]; m > 0.0) {
+      Vector3 r = corner, v = Vector3::zero(), f = v;
+      for (int a = 0; a < D; ++a) {
+        r[a] += domain.grid.cell_size * at[static_cast<std::size_t>(a)] + block.displacements[n][a];
+        v[a] = numbers[velocity_at + a];
+        f[a] = numbers[force_at + a];
+      }
+      const Vector3 mr = m * r;
+      mass += m;
+      first += mr;
+      momentum += m * v;
+      angular += cross(mr, v);
+      force += f;
+      moment += cross(r, f);
+      for (int i = 0; i < D; ++i)
+        for (int j = i; j < D; ++j) second[i][j] += mr[i] * r[j];
+    }
+    for (std::size_t a = 0; a < D && ++at[a] == nodes[a]; ++a) at[a] = 0;
+  }
+  RigidSums& motion = sums.motion;
+  motion.mass += mass;
+  motion.first += first;
+  motion.momentum += momentum;
+  motion.angular += angular;
+  sums.force += force;
+  sums.moment += moment;
+  const double trace = second[0][0] + second[1][1] + second[2][2];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      motion.inertia[i][j] += (i == j ? trace : 0.0) - (i <= j ? second[i][j] : second[j][i]);
+}
+
+/// Forces m (g + alpha x r) to the nodes of a patch, r from a centre.
+template <int D>
+void add_forces(Domain<D>& domain, std::size_t p, const Vector3& centre, const Vector3& straight,
+                const Vector3& alpha) {
+  const Patch<D>& patch = domain.grid.patches[p];
+  const NodeBlock<D> block = domain.grid.block(p);
+  const Vector3 corner = place_of(domain.grid, patch, patch.shape.low) - centre;
+  Index<D> at{};
+  for (int n = 0; n < block.count; ++n) {
+    double* const numbers = block.records[n];
+    Vector3 r = corner;
+    for (int a = 0; a < D; ++a)
+      r[a] += domain.grid.cell_size * at[static_cast<std::size_t>(a)] + block.displacements[n][a];
+    const Vector3 g = straight + cross(alpha, r);
+    for (int a = 0; a < D; ++a) numbers[force_at + a] += numbers[mass_at] * g[a];
+    for (std::size_t a = 0; a < D && ++at[a] == patch.shape.nodes[a]; ++a) at[a] = 0;
   }
 }
 
@@ -103,17 +150,8 @@ void turn_in_body(Domain<D>& domain) {
             ((1.0 / sums.motion.mass) * sums.force + straight + in_space<D>(domain.gravity));
     // Kinetic energy is that of the body too.
     domain.sums[first].kept_ahead -= 0.5 * turning.excess * dot(turning.spin, turning.spin);
-    for (std::size_t p = first; p < first + patches.size(); ++p) {
-      const Patch<D>& patch = domain.grid.patches[p];
-      const NodeBlock<D> block = domain.grid.block(p);
-      for (int n = 0; n < block.count; ++n) {
-        const double m = block.records[n][mass_at];
-        const Vector3 f =
-            m *
-            (straight + cross(alpha, place_of_kept(domain.grid, patch, block, n) - turning.centre));
-        for (int a = 0; a < D; ++a) block.records[n][force_at + a] += f[a];
-      }
-    }
+    for (std::size_t p = first; p < first + patches.size(); ++p)
+      add_forces(domain, p, turning.centre, straight, alpha);
   });
 }
 

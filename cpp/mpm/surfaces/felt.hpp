@@ -24,6 +24,10 @@ class SurfacePoint {
   static constexpr int n = D == 2 ? 6 : 5;
   static constexpr double reach = D == 2 ? 2.4725 : 2.3829;  // not less than R
 
+  /// No surface is felt whose nearest point is farther off [spacings]: all around at that height
+  /// the sum is a quarter of S_1.
+  static constexpr double farthest = 1.5;
+
   explicit SurfacePoint(double sum) {
     const double share = a2 * std::pow(sum / at_edge(), 1.0 / m);
     zeta = std::sqrt(std::max(reach_squared - share, least_zeta_squared));

@@ -1,30 +1,27 @@
 #include "mpm/surfaces/near_points.hpp"
 
 #include <array>
-#include <atomic>
+#include <bit>
+#include <span>
 
 #include "mpm/surfaces/felt.hpp"
+#include "mpm/surfaces/folds.hpp"
 
 namespace mpm {
 namespace {
 
 // Lists hold what is nearer than a point is felt by this more, so that they last until points have
 // moved by half of it.
-constexpr double margin = 1.0;  // spacings
-// A body feels itself where it is folded: points of its own that are farther off in the body than
-// this are those of another [cells].
-constexpr double apart_in_body = 4.0;
+constexpr double margin = 1.5;  // spacings
 
-/// A point by the box that it is in, of edges of the reach of the lists.
-struct Boxed {
-  std::array<std::int32_t, 3> box;
-  std::uint32_t point;
+/// The box of space that a point is in, of edges of the reach of the lists.
+using BoxIndex = std::array<std::int32_t, 3>;
 
-  friend bool operator<(const Boxed& x, const Boxed& y) {
-    for (std::size_t a = 3; a-- > 0;)  // the first axis fastest
-      if (x.box[a] != y.box[a]) return x.box[a] < y.box[a];
-    return x.point < y.point;
-  }
+/// The points in a box: a range of those that are sorted by box, and between which bodies they lie.
+struct PointBox {
+  BoxIndex index{};
+  std::uint32_t first = 0, count = 0;
+  std::int32_t least_body = 0, greatest_body = 0;
 };
 
 template <int D>
@@ -32,125 +29,171 @@ double reach_of_lists(const Surfaces<D>& surfaces) {
   return surfaces.spacing * (SurfacePoint<D>::reach + margin);
 }
 
-/// Have some points moved so far that lists may lack what they feel?
+/// How far the farthest point has moved since lists were made [m].
 template <int D>
-bool lists_are_old(Domain<D>& domain) {
-  Surfaces<D>& surfaces = domain.surfaces;
-  if (surfaces.places_of_lists.size() != surfaces.places.size()) return true;
-  const double most = 0.5 * margin * surfaces.spacing;
-  std::atomic<bool> moved = false;
+double moved_since(Domain<D>& domain) {
+  const Surfaces<D>& surfaces = domain.surfaces;
+  std::vector<double> farthest(surfaces.parts.size(), 0.0);
   domain.threads.for_each(surfaces.parts.size(), [&](std::size_t k) {
     const SurfacePart<D>& part = surfaces.parts[k];
-    double farthest = 0.0;
     for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
       const Vec<double, D> way = surfaces.places[c] - surfaces.places_of_lists[c];
-      farthest = std::max(farthest, dot(way, way));
+      farthest[k] = std::max(farthest[k], dot(way, way));
     }
-    if (farthest > most * most) moved = true;
   });
-  return moved;
+  return std::sqrt(*std::ranges::max_element(farthest));
 }
 
-/// Where a point is in its body at the start.
+/// All points by their boxes, found by the box.
 template <int D>
-Vec<double, D> place_in_body(const Domain<D>& domain, int body, const ContactPoint<D>& point) {
-  const Host<D>& host = domain.surfaces.hosts[point.host];
-  return listed_place(domain.pool_of(domain.body_at(body)), host.row) + point.offset;
-}
-
-template <int D>
-class NearSearch {
+class PointBoxes {
  public:
-  explicit NearSearch(const Domain<D>& domain)
-      : domain_(domain), surfaces_(domain.surfaces), reach_(reach_of_lists(domain.surfaces)) {
-    body_of_.resize(surfaces_.points.size());
-    as_one_.resize(surfaces_.points.size());
-    for (const SurfacePart<D>& part : surfaces_.parts)
-      for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
-        body_of_[c] = part.body;
-        as_one_[c] = part.as_one;
-      }
-    boxed_.reserve(surfaces_.points.size());
-    for (std::uint32_t c = 0; c < surfaces_.points.size(); ++c)
-      boxed_.push_back({box_of(surfaces_.places[c]), c});
-    std::ranges::sort(boxed_, std::less<>{});
+  PointBoxes(const Domain<D>& domain, const std::vector<std::int32_t>& body_of)
+      : origin_(domain.grid.origin), reach_(reach_of_lists(domain.surfaces)) {
+    const std::vector<Vec<double, D>>& places = domain.surfaces.places;
+    std::vector<std::pair<BoxIndex, std::uint32_t>> boxed;
+    boxed.reserve(places.size());
+    for (std::uint32_t c = 0; c < places.size(); ++c) boxed.push_back({index_of(places[c]), c});
+    std::ranges::sort(boxed);
+    points_.reserve(boxed.size());
+    for (const auto& [index, point] : boxed) {
+      if (boxes_.empty() || boxes_.back().index != index)
+        boxes_.push_back(
+            {index, static_cast<std::uint32_t>(points_.size()), 0, body_of[point], body_of[point]});
+      PointBox& box = boxes_.back();
+      ++box.count;
+      box.least_body = std::min(box.least_body, body_of[point]);
+      box.greatest_body = std::max(box.greatest_body, body_of[point]);
+      points_.push_back(point);
+    }
+    table_.assign(std::bit_ceil(2 * boxes_.size() + 1), 0);
+    for (std::size_t b = 0; b < boxes_.size(); ++b) {
+      std::size_t at = hash(boxes_[b].index);
+      while (table_[at] != 0) at = (at + 1) % table_.size();
+      table_[at] = static_cast<std::uint32_t>(b + 1);
+    }
   }
 
-  /// The points that those of a part may feel, by body.
-  void find(SurfacePart<D>& part) const {
-    part.near.clear();
-    part.near_of.clear();
-    for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
-      const auto first = static_cast<std::ptrdiff_t>(part.near.size());
-      find(part, c);
-      std::sort(part.near.begin() + first, part.near.end());  // by body as well
-      int body = -1;
-      for (auto k = static_cast<std::size_t>(first); k < part.near.size(); ++k) {
-        if (const int other = body_of_[part.near[k]]; other != body) {
-          body = other;
-          part.near_of.push_back({c, body, static_cast<std::uint32_t>(k), 0});
-        }
-        ++part.near_of.back().count;
-      }
-    }
+  BoxIndex index_of(const Vec<double, D>& place) const {
+    BoxIndex index{};
+    for (int a = 0; a < D; ++a)
+      index[static_cast<std::size_t>(a)] =
+          static_cast<std::int32_t>(std::floor((place[a] - origin_[a]) / reach_));
+    return index;
+  }
+  double reach() const { return reach_; }
+  std::span<const std::uint32_t> points(const PointBox& box) const {
+    return {points_.data() + box.first, box.count};
+  }
+  /// Null if nothing is there.
+  const PointBox* find(const BoxIndex& index) const {
+    for (std::size_t at = hash(index); table_[at] != 0; at = (at + 1) % table_.size())
+      if (const PointBox& box = boxes_[table_[at] - 1]; box.index == index) return &box;
+    return nullptr;
   }
 
  private:
-  std::array<std::int32_t, 3> box_of(const Vec<double, D>& place) const {
-    std::array<std::int32_t, 3> box{};
-    for (int a = 0; a < D; ++a)
-      box[static_cast<std::size_t>(a)] =
-          static_cast<std::int32_t>(std::floor((place[a] - domain_.grid.origin[a]) / reach_));
-    return box;
+  std::size_t hash(const BoxIndex& index) const {
+    std::uint64_t h = 0;
+    for (const std::int32_t i : index)
+      h = (h ^ static_cast<std::uint32_t>(i)) * 0x9e3779b97f4a7c15ull;
+    return (h >> 32) % table_.size();
   }
 
-  void find(SurfacePart<D>& part, std::uint32_t c) const {
-    const Vec<double, D> here = surfaces_.places[c];
-    const auto middle = box_of(here);
-    const int layers = D == 3 ? 1 : 0;
-    for (int z = -layers; z <= layers; ++z)
-      for (int y = -1; y <= 1; ++y) {
-        // The boxes of a row follow one another.
-        const Boxed low{{middle[0] - 1, middle[1] + y, middle[2] + z}, 0};
-        const std::array<std::int32_t, 3> last{middle[0] + 1, low.box[1], low.box[2]};
-        for (auto at = std::ranges::lower_bound(boxed_, low, std::less<>{});
-             at != boxed_.end() && at->box[0] <= last[0] && at->box[1] == last[1] &&
-             at->box[2] == last[2];
-             ++at) {
-          const Vec<double, D> way = surfaces_.places[at->point] - here;
-          if (dot(way, way) < reach_ * reach_ && may_feel(part, c, at->point))
-            part.near.push_back(at->point);
-        }
-      }
-  }
-
-  bool may_feel(const SurfacePart<D>& part, std::uint32_t c, std::uint32_t other) const {
-    if (part.as_one && as_one_[other]) return false;
-    if (body_of_[other] != part.body) return true;
-    const Vec<double, D> way = place_in_body(domain_, part.body, surfaces_.points[c]) -
-                               place_in_body(domain_, part.body, surfaces_.points[other]);
-    const double far = apart_in_body * domain_.grid.cell_size;
-    return dot(way, way) > far * far;
-  }
-
-  const Domain<D>& domain_;
-  const Surfaces<D>& surfaces_;
+  Vec<double, D> origin_;
   double reach_;
-  std::vector<std::int32_t> body_of_;
-  std::vector<bool> as_one_;  // of each point, is it of a body that does not deform?
-  std::vector<Boxed> boxed_;
+  std::vector<PointBox> boxes_;
+  std::vector<std::uint32_t> points_, table_;  // 1 + the number of a box, or 0
 };
+
+/// The boxes around one, and whether there are points of several bodies.
+template <int D>
+struct BoxesAround {
+  std::array<const PointBox*, 27> box{};
+  std::size_t count = 0;
+  BoxIndex middle{};
+  bool mixed = false;
+
+  void find(const PointBoxes<D>& boxes, const BoxIndex& index) {
+    if (count > 0 && index == middle) return;
+    middle = index;
+    count = 0;
+    constexpr int layers = D == 3 ? 1 : 0;
+    for (int z = -layers; z <= layers; ++z)
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x)
+          if (const PointBox* const one = boxes.find({index[0] + x, index[1] + y, index[2] + z}))
+            box[count++] = one;
+    mixed = std::any_of(box.begin(), box.begin() + count, [&](const PointBox* one) {
+      return one->least_body != box[0]->least_body || one->greatest_body != box[0]->least_body;
+    });
+  }
+};
+
+/// The points that those of a part may feel, by body.
+template <int D>
+void find_near(const Domain<D>& domain, const PointBoxes<D>& boxes, const FoldedBodies<D>& folded,
+               const std::vector<std::int32_t>& body_of, SurfacePart<D>& part) {
+  const Surfaces<D>& surfaces = domain.surfaces;
+  const double square = boxes.reach() * boxes.reach();
+  const bool folds = folded.is_folded(part.body);
+  BoxesAround<D> around;
+  part.near.clear();
+  part.near_of.clear();
+  for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
+    const Vec<double, D> here = surfaces.places[c];
+    around.find(boxes, boxes.index_of(here));
+    if (!around.mixed && !folds) continue;
+    const auto first = static_cast<std::ptrdiff_t>(part.near.size());
+    for (std::size_t b = 0; b < around.count; ++b) {
+      const PointBox& box = *around.box[b];
+      if (!folds && box.least_body == part.body && box.greatest_body == part.body) continue;
+      for (const std::uint32_t q : boxes.points(box)) {
+        const Vec<double, D> way = surfaces.places[q] - here;
+        if (!(dot(way, way) < square)) continue;
+        if (body_of[q] == part.body ? folds && folded.apart_in_body(c, q)
+                                    : !part.as_one || !folded.as_one(body_of[q]))
+          part.near.push_back(q);
+      }
+    }
+    std::sort(part.near.begin() + first, part.near.end());  // by body as well
+    int body = -1;
+    double nearest = 0.0;
+    for (auto k = static_cast<std::size_t>(first); k < part.near.size(); ++k) {
+      if (const int other = body_of[part.near[k]]; other != body) {
+        body = other;
+        part.near_of.push_back({c, body, static_cast<std::uint32_t>(k), 0, 0.0});
+        nearest = std::numeric_limits<double>::infinity();
+      }
+      const Vec<double, D> way = surfaces.places[part.near[k]] - here;
+      nearest = std::min(nearest, dot(way, way));
+      NearPoints& near = part.near_of.back();
+      ++near.count;
+      // Until both have moved by half of what lies between.
+      near.sleeps_until = 0.5 * (std::sqrt(nearest) - SurfacePoint<D>::farthest * surfaces.spacing);
+    }
+  }
+}
 
 }  // namespace
 
 template <int D>
 void find_near_points(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
-  if (!lists_are_old(domain)) return;
-  const NearSearch<D> search(domain);
-  domain.threads.for_each(surfaces.parts.size(),
-                          [&](std::size_t k) { search.find(surfaces.parts[k]); });
+  if (surfaces.places_of_lists.size() == surfaces.places.size()) {
+    surfaces.moved = moved_since(domain);
+    if (surfaces.moved < 0.5 * margin * surfaces.spacing) return;
+  }
+  std::vector<std::int32_t> body_of(surfaces.points.size());
+  for (const SurfacePart<D>& part : surfaces.parts)
+    std::fill_n(body_of.begin() + part.first_point, part.points, part.body);
+  const PointBoxes<D> boxes(domain, body_of);
+  const FoldedBodies<D> folded(domain, boxes.reach());
+  domain.threads.for_each(surfaces.parts.size(), [&](std::size_t k) {
+    find_near(domain, boxes, folded, body_of, surfaces.parts[k]);
+  });
   surfaces.places_of_lists = surfaces.places;
+  surfaces.moved = 0.0;
 }
 
 template void find_near_points<2>(Domain<2>&);

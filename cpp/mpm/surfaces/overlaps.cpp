@@ -41,6 +41,12 @@ SurfaceTouch<D> touch_of_face(const Domain<D>& domain, int body, std::uint32_t p
   return touch;
 }
 
+/// e^(D - 1).
+template <int D>
+double face_of_spacing(const Surfaces<D>& surfaces) {
+  return D == 2 ? surfaces.spacing : surfaces.spacing * surfaces.spacing;
+}
+
 /// The sum of the weights of the points of another body around a point, (S3).
 template <int D>
 double sum_of_weights(const Surfaces<D>& surfaces, const SurfacePart<D>& part,
@@ -52,7 +58,7 @@ double sum_of_weights(const Surfaces<D>& surfaces, const SurfacePart<D>& part,
     const Vec<double, D> way = surfaces.places[q] - here;
     sum += surfaces.points[q].area * SurfacePoint<D>::weight(dot(way, way), surfaces.spacing);
   }
-  return sum / std::pow(surfaces.spacing, D - 1);
+  return sum / face_of_spacing(surfaces);
 }
 
 /// A point that overlaps another body by e - e zeta - b, with the points of this that it feels.
@@ -60,7 +66,7 @@ template <int D>
 void add_touch_of_body(const Domain<D>& domain, SurfacePart<D>& part, const NearPoints& near,
                        double sum, double set_back) {
   const Surfaces<D>& surfaces = domain.surfaces;
-  const double e = surfaces.spacing, share = 1.0 / (sum * std::pow(e, D - 1));
+  const double e = surfaces.spacing, share = 1.0 / (sum * face_of_spacing(surfaces));
   const SurfacePoint<D> in(sum);
   SurfaceTouch<D> touch;
   touch.point = near.point;
@@ -91,17 +97,22 @@ void add_touch_of_body(const Domain<D>& domain, SurfacePart<D>& part, const Near
 }
 
 /// f(near points, the sum of their weights) for the bodies that a point overlaps, from the first of
-/// SurfacePart::near_of that are not before it on.
+/// SurfacePart::near_of that are not before it on; `least`: of the sum.
 template <int D, class F>
-void for_each_body(const Domain<D>& domain, const SurfacePart<D>& part, std::uint32_t point,
-                   std::size_t& next, F&& f) {
-  const double least =
-      SurfacePoint<D>::sum_at(1.0 + 0.5 * domain.surfaces.onset / domain.surfaces.spacing);
+void for_each_body(const Surfaces<D>& surfaces, const SurfacePart<D>& part, std::uint32_t point,
+                   double least, std::size_t& next, F&& f) {
   for (; next < part.near_of.size() && part.near_of[next].point == point; ++next) {
     const NearPoints& near = part.near_of[next];
-    const double sum = sum_of_weights(domain.surfaces, part, near);
+    if (surfaces.moved < near.sleeps_until) continue;
+    const double sum = sum_of_weights(surfaces, part, near);
     if (sum > least) f(near, sum);
   }
+}
+
+/// The sum of weights at which a spring may begin.
+template <int D>
+double least_sum(const Surfaces<D>& surfaces) {
+  return SurfacePoint<D>::sum_at(1.0 + 0.5 * surfaces.onset / surfaces.spacing);
 }
 
 }  // namespace
@@ -111,6 +122,7 @@ void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part) {
   const Surfaces<D>& surfaces = domain.surfaces;
   part.touches.clear();
   part.felt.clear();
+  const double least = least_sum(surfaces);
   std::size_t next = 0;
   for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
     // Bodies that do not deform are held by faces as a whole.
@@ -122,7 +134,7 @@ void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part) {
                         part.touches.push_back(
                             touch_of_face(domain, part.body, c, face, overlap, back, normal));
                     });
-    for_each_body(domain, part, c, next, [&](const NearPoints& near, double sum) {
+    for_each_body(surfaces, part, c, least, next, [&](const NearPoints& near, double sum) {
       add_touch_of_body(domain, part, near, sum, set_back_of(surfaces, c, near.body));
     });
   }
@@ -131,16 +143,22 @@ void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part) {
 template <int D>
 void set_back_overlaps(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
-  for (const SurfacePart<D>& part : surfaces.parts) {
+  SetBack& told = domain.contact.set_back;
+  const double least = least_sum(surfaces);
+  const double seen = 1e-6 * domain.grid.cell_size;  // of what is drawn into each other
+  for (SurfacePart<D>& part : surfaces.parts) {
     std::size_t next = 0;
     for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
+      const auto set_back = [&](Opposite opposite, double overlap) {
+        surfaces.set_back.push_back({c, opposite, overlap + 0.5 * surfaces.onset});
+        told.most = std::max(told.most, overlap);
+        if (overlap > seen) ++told.particles;
+      };
       if (!part.as_one)
-        for_each_face(domain, surfaces.places[c], [&](Opposite face, double overlap, const auto&) {
-          surfaces.set_back.push_back({c, face, overlap + 0.5 * surfaces.onset});
-        });
-      for_each_body(domain, part, c, next, [&](const NearPoints& near, double sum) {
-        const double overlap = surfaces.spacing * (1.0 - SurfacePoint<D>(sum).zeta);
-        surfaces.set_back.push_back({c, near.body, overlap + 0.5 * surfaces.onset});
+        for_each_face(domain, surfaces.places[c],
+                      [&](Opposite face, double overlap, const auto&) { set_back(face, overlap); });
+      for_each_body(surfaces, part, c, least, next, [&](const NearPoints& near, double sum) {
+        set_back(near.body, surfaces.spacing * (1.0 - SurfacePoint<D>(sum).zeta));
       });
     }
   }

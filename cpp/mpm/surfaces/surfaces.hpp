@@ -111,6 +111,8 @@ struct NearPoints {
   std::uint32_t point = 0;
   std::int32_t body = 0;
   std::uint32_t first = 0, count = 0;  // of SurfacePart::near
+  // They cannot be felt until some point has moved by so much since the lists were made [m].
+  double sleeps_until = 0.0;
 };
 
 /// How a host moves: the mean of its nodes' velocities, and its gradient in the body at the start.
@@ -206,6 +208,7 @@ struct Surfaces {
   std::vector<KeptOfContact<double>> set_back;  // by how much they overlapped at the start [m]
 
   std::vector<Vec<double, D>> places_of_lists;  // where points were when NearPoints were found
+  double moved = 0.0;                           // by the farthest of them since [m]
   std::vector<HostMotion<D>> motions;           // of hosts in touch
   std::vector<std::uint32_t> moving;            // the numbers of these
   std::vector<std::uint32_t> place_of_motion;   // of each host, 1 + where that is, or 0

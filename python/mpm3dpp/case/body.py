@@ -17,7 +17,7 @@ from mpm3dpp.base.units import PositiveLength
 from mpm3dpp.shapes.base import MaybeShape
 from mpm3dpp.shapes.cut_round import was_round
 from mpm3dpp.shapes.faces import FACES, has_faces
-from mpm3dpp.shapes.primitives import Disc, Sphere
+from mpm3dpp.shapes.primitives import Disc
 from mpm3dpp.shapes.shells import (
     LATTICE,
     LEAVE_OUT,
@@ -158,4 +158,4 @@ class Body(CaseModel):
     def _radius(self) -> float:
         """Return the radius of a disc or a ball [m]; infinity of others."""
         shape = None if self.shape is None else unmoved(self.shape)
-        return shape.radius if type(shape) in (Disc, Sphere) else math.inf
+        return shape.radius if isinstance(shape, Disc) else math.inf  # of which spheres are kinds

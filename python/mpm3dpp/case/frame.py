@@ -13,6 +13,7 @@ from mpm3dpp.base.errors import violation
 from mpm3dpp.base.frames import MATERIAL, UPDATED
 
 from .grid import CONTACT
+from .pairs import presses
 
 if TYPE_CHECKING:
     from .case import Case
@@ -73,6 +74,18 @@ def _of_body(case: Case, name: str) -> Iterator[tuple[str, str]]:
         yield "does not go with loads on its surface yet", updated
 
 
+def _of_contact(case: Case) -> Iterator[str]:
+    """Yield what `contact` has that is for contact at nodes: surfaces do without."""
+    plain = type(case.contact)()
+    for key in ("detection", "normal", "gap_distance", "normal_refresh_distance"):
+        if getattr(case.contact, key) != getattr(plain, key):
+            yield f"does not go with contact.{key}, which is for contact at nodes"
+    if "response" in case.contact.model_fields_set and case.contact.response != "springs":
+        yield f'does not go with contact.response = "{case.contact.response}", as it has springs'
+    if presses(case):
+        yield 'does not go with contact.interference = "pressed" yet'
+
+
 def _of_case(case: Case, name: str) -> Iterator[tuple[str, str]]:
     """Yield what the rest of the case has, likewise."""
     updated = f'give frame = "{UPDATED}"'
@@ -82,8 +95,11 @@ def _of_case(case: Case, name: str) -> Iterator[tuple[str, str]]:
     if case.contact_enabled and others:
         rule = f"does not go with contact with {others[0]}, which has another, yet"
         yield rule, f'give all frame = "{MATERIAL}", contact.enabled = false, or {updated[5:]}'
-    if case.contact.bonded and case.body_count > 1:
+    bonded = case.contact.bonded or any(pair.bonded for pair in case.contact.pair)
+    if bonded and case.body_count > 1:
         yield "does not go with bonded bodies yet", updated
+    if case.contact_enabled:
+        yield from ((rule, f"leave it out, or {updated}") for rule in _of_contact(case))
     if any(wall not in ("free", CONTACT) for wall in case.grid.walls):
         rule = f'goes with walls of grid.box that are "{CONTACT}" alone, so far'
         yield rule, f'give walls "{CONTACT}", or {updated}'

@@ -13,6 +13,7 @@ from mpm3dpp.base.errors import key_text
 from mpm3dpp.base.model import CaseModel
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.detonation import EXPLOSIVE
+from mpm3dpp.case.frame import in_body
 from mpm3dpp.case.grid import CONTACT
 from mpm3dpp.case.initial import GEOSTATIC
 from mpm3dpp.ranks.world import World, together
@@ -94,8 +95,9 @@ def with_overlap(
         'contact.interference = "pressed" if that is a press fit'
         for one in loose
     )
+    whose = "contact points" if in_body(case) else "particles"
     return [note for note in told if note not in known] + [
-        f"bodies overlap at the start by up to {most:.3g} m; the surfaces of {count:,} particles "
+        f"bodies overlap at the start by up to {most:.3g} m; the surfaces of {count:,} {whose} "
         f"are set back by that, so that contact does not throw them apart{who}"
     ]
 

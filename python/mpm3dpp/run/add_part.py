@@ -18,10 +18,10 @@ from mpm3dpp.case.forces import force_programs
 from mpm3dpp.case.load_pieces import add_load, pieces
 from mpm3dpp.case.motion import Motion
 from mpm3dpp.case.pairs import bonds_of, laws_of
-from mpm3dpp.case.surface_points import add_surfaces, has_surface
 from mpm3dpp.fill.initial import Overburden, start_columns
 from mpm3dpp.fill.parts import FilledPart, Particles
 from mpm3dpp.fill.slices import near_points
+from mpm3dpp.fill.surface_points import add_surfaces
 from mpm3dpp.ranks.world import World, share_of
 
 
@@ -46,10 +46,9 @@ def add_part(
         world: processes that each give a share of the grains, or a slice of a body.
     """
     material = materials[kind_of(case, part)]
-    has_points = point_spacing is not None and has_surface(case, part.name)
     if part.balls is not None:
         leader, own = _add_grains(core, case, part, material, world)
-        if has_points:
+        if point_spacing is not None:
             add_surfaces(core, case, part, leader, own, point_spacing)
         return
     particles = part.own.particles if part.own else part.make(0, 1)
@@ -69,7 +68,7 @@ def add_part(
     for name, load in case.load.items():
         if load.body == part.name:
             add_load(core, case, name, number, pieces(case, name, positions, part.spacing, near))
-    if has_points:
+    if point_spacing is not None:
         add_surfaces(core, case, part, number, particles, point_spacing)
 
 

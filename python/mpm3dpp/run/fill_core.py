@@ -11,10 +11,10 @@ from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.frames import MATERIAL
 from mpm3dpp.case.case import Case
-from mpm3dpp.case.surface_points import point_spacing
 from mpm3dpp.fill.initial import overburden
 from mpm3dpp.fill.interference import Interference
 from mpm3dpp.fill.parts import Filled
+from mpm3dpp.fill.surface_points import point_spacing
 from mpm3dpp.ranks.world import World
 
 from .add_part import add_part, kind_of

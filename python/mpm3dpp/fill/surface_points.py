@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mpm3dpp.base.frames import MATERIAL
+from mpm3dpp.case.grid import CONTACT
+from mpm3dpp.case.load_pieces import nearest_particles
 from mpm3dpp.shapes.contact_points import (
     ContactPoints,
     points_of_ball,
@@ -17,13 +19,10 @@ from mpm3dpp.shapes.contact_points import (
     points_of_shape,
 )
 
-from .grid import CONTACT
-from .load_pieces import nearest_particles
-
 if TYPE_CHECKING:
-    from mpm3dpp.fill.parts import FilledPart, Particles
+    from mpm3dpp.case.case import Case
 
-    from .case import Case
+    from .parts import FilledPart, Particles
 
 Array = NDArray[np.float64]
 
@@ -42,15 +41,10 @@ def point_spacing(case: Case, parts: Iterable[FilledPart]) -> float | None:
     return min(own) / FINER[case.grid.dimension]
 
 
-def has_surface(case: Case, name: str) -> bool:
-    """Return whether the bodies of an entry touch others by contact points."""
-    return case.parts()[name].frame == MATERIAL or (case.contact_enabled and case.is_rigid(name))
-
-
 def add_surfaces(
     core: Any, case: Case, part: FilledPart, number: int, particles: Particles, spacing: float
 ) -> None:
-    """Give the core the contact points of the bodies of an entry.
+    """Give the core the contact points of the bodies of an entry, if they touch others by them.
 
     Args:
         core: of the simulation.
@@ -63,6 +57,9 @@ def add_surfaces(
     Raises:
         CaseError: a part of the surface has no particle near it.
     """
+    meets = case.contact_enabled and case.is_rigid(part.name)
+    if not meets and case.parts()[part.name].frame != MATERIAL:
+        return
     ends = np.cumsum(particles.counts)
     for k, (begin, end) in enumerate(zip(ends - particles.counts, ends, strict=True)):
         positions = particles.positions[begin:end]

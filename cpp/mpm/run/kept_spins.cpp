@@ -1,0 +1,64 @@
+#include "mpm/run/kept_spins.hpp"
+
+#include "mpm/math/eigen.hpp"
+#include "mpm/run/part_sums.hpp"
+#include "mpm/surfaces/restitution.hpp"
+
+namespace mpm {
+namespace {
+
+// A body whose particles have less inertia about some axis than this share of D has none that could
+// be told from that of its nodes, and one with more than that share needs nothing.
+constexpr double least_inertia = 3.0, most_inertia = 200.0;
+
+/// The least principal moment of inertia [kg m^2]; in 2D that about z.
+template <int D>
+double least_moment(const Matrix3& inertia) {
+  if constexpr (D == 2) return inertia[2][2];
+  Sym<double, 3> tensor;
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j) tensor(i, j) = inertia[i][j];
+  const Eigen<double, 3> principal = eigen(tensor);
+  return std::min({principal.value[0], principal.value[1], principal.value[2]});
+}
+
+}  // namespace
+
+template <int D>
+void list_kept_spins(Domain<D>& domain) {
+  const std::vector<PartSums> parts = sums_of_bodies(domain, SumsOf::particles);
+  for (std::size_t b = 0; b < parts.size(); ++b) {
+    if (!domain.bodies[b].keeps_nodes()) continue;
+    KeptSpin turning;
+    turning.body = static_cast<int>(b);
+    turning.mass = parts[b].mass;
+    turning.excess = 0.5 * turning.mass * std::pow(domain.grid.cell_size, 2);
+    const double least = least_moment<D>(parts[b].inertia) / turning.excess;
+    const bool turns = least >= least_inertia && least <= most_inertia;
+    if (!turns) turning.excess = 0.0;
+    // Restitution asks how all of them move.
+    if (turns || restitution_takes(domain.contact_settings)) domain.kept_spins.push_back(turning);
+  }
+}
+
+template <int D>
+void find_kept_spins(Domain<D>& domain) {
+  for (KeptSpin& turning : domain.kept_spins) turning.begun = false;
+  const std::vector<PartSums> nodes = sums_of_bodies(domain, SumsOf::kept_nodes);
+  for (KeptSpin& turning : domain.kept_spins) {
+    const PartSums& part = nodes[static_cast<std::size_t>(turning.body)];
+    turning.begun = true;
+    turning.centre = part.centre;
+    turning.velocity = velocity_of(part);
+    turning.spin = spin_of(part, D);
+    turning.of_nodes = part.angular_momentum;
+    turning.momentum = turning.of_nodes - turning.excess * turning.spin;
+  }
+}
+
+template void list_kept_spins<2>(Domain<2>&);
+template void list_kept_spins<3>(Domain<3>&);
+template void find_kept_spins<2>(Domain<2>&);
+template void find_kept_spins<3>(Domain<3>&);
+
+}  // namespace mpm

@@ -1,0 +1,16 @@
+#pragma once
+// How bodies on nodes of their own turn (particles/kept_spin.hpp), at the start and where
+// velocities are set.
+#include "mpm/domain.hpp"
+
+namespace mpm {
+
+/// The bodies that turn with more inertia than their particles have; with restitution all of them.
+template <int D>
+void list_kept_spins(Domain<D>& domain);
+
+/// How they turn, by what their nodes have.
+template <int D>
+void find_kept_spins(Domain<D>& domain);
+
+}  // namespace mpm

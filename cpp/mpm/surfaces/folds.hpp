@@ -1,0 +1,109 @@
+#pragma once
+// Which bodies may touch themselves: points of a body that are far from each other in it are those
+// of another where it is folded. A body whose points are all near to where a rigid motion takes
+// them is not.
+#include "mpm/domain.hpp"
+#include "mpm/math/inverse.hpp"
+
+namespace mpm {
+
+template <int D>
+class FoldedBodies {
+ public:
+  /// Points that are farther from each other than `reach` do not matter [m].
+  FoldedBodies(const Domain<D>& domain, double reach)
+      : domain_(domain),
+        reach_(reach),
+        folded_(domain.bodies.size(), false),
+        as_one_(domain.bodies.size(), false) {
+    const auto& parts = domain.surfaces.parts;
+    for (std::size_t k = 0; k < parts.size();) {
+      std::size_t end = k;
+      while (end < parts.size() && parts[end].body == parts[k].body) ++end;
+      const auto body = static_cast<std::size_t>(parts[k].body);
+      as_one_[body] = parts[k].as_one;
+      if (!parts[k].as_one) folded_[body] = is_bent({parts.data() + k, end - k});
+      k = end;
+    }
+  }
+
+  bool is_folded(int body) const { return folded_[static_cast<std::size_t>(body)]; }
+  /// Does a body not deform?
+  bool as_one(int body) const { return as_one_[static_cast<std::size_t>(body)]; }
+  /// Are two points of a body so far from each other in it that they may touch?
+  bool apart_in_body(std::uint32_t c, std::uint32_t q) const {
+    const Vec<double, D> way = place_in_body(c) - place_in_body(q);
+    const double far = apart * domain_.grid.cell_size;
+    return dot(way, way) > far * far;
+  }
+
+ private:
+  static constexpr double apart = 4.0;  // cells
+
+  Vec<double, D> place_in_body(std::uint32_t c) const {
+    const ContactPoint<D>& point = domain_.surfaces.points[c];
+    const Host<D>& host = domain_.surfaces.hosts[point.host];
+    const int body = domain_.surfaces.parts[host.part].body;
+    return listed_place(domain_.pool_of(domain_.body_at(body)), host.row) + point.offset;
+  }
+  template <class F>
+  static void for_each_point(std::span<const SurfacePart<D>> parts, F&& f) {
+    for (const SurfacePart<D>& part : parts)
+      for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) f(c);
+  }
+
+  /// Is some point far from where the rigid motion that is nearest to all takes it?
+  bool is_bent(std::span<const SurfacePart<D>> parts) const {
+    Vec<double, D> X = Vec<double, D>::zero(), x = X;
+    double count = 0.0;
+    for_each_point(parts, [&](std::uint32_t c) {
+      X += place_in_body(c);
+      x += domain_.surfaces.places[c];
+      count += 1.0;
+    });
+    X = (1.0 / count) * X;
+    x = (1.0 / count) * x;
+    Mat<double, D> moments{};
+    for_each_point(parts, [&](std::uint32_t c) {
+      const Vec<double, D> from = place_in_body(c) - X, to = domain_.surfaces.places[c] - x;
+      for (int i = 0; i < D; ++i)
+        for (int j = 0; j < D; ++j) moments[i][j] += to[i] * from[j];
+    });
+    const Mat<double, D> turn = rotation_of(moments);
+    // Of two points that come nearer than `reach` one is off by half of what they lack, or more.
+    const double far = 0.5 * (apart * domain_.grid.cell_size - reach_);
+    bool bent = false;
+    for_each_point(parts, [&](std::uint32_t c) {
+      const Vec<double, D> off =
+          domain_.surfaces.places[c] - x - product(turn, place_in_body(c) - X);
+      bent = bent || !(dot(off, off) < far * far);
+    });
+    return bent;
+  }
+
+  /// The rotation of the polar decomposition, by Newton's iteration Q <- (Q + Q^-T) / 2 (Higham
+  /// 1986); any matrix serves, the nearest rotation best.
+  static Mat<double, D> rotation_of(Mat<double, D> Q) {
+    double size = 0.0;
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j) size = std::max(size, std::abs(Q[i][j]));
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j) Q[i][j] /= size > 0.0 ? size : 1.0;
+    for (int k = 0; k < 20; ++k) {
+      const Mat<double, D> inverse = inverse_of(Q);
+      for (int i = 0; i < D; ++i)
+        for (int j = i; j < D; ++j) {
+          const double ij = 0.5 * (Q[i][j] + inverse[j][i]), ji = 0.5 * (Q[j][i] + inverse[i][j]);
+          Q[i][j] = ij;
+          Q[j][i] = ji;
+        }
+    }
+    return Q;
+  }
+
+  const Domain<D>& domain_;
+  double reach_;
+  std::vector<bool> folded_, as_one_;  // by body
+};
+
+}  // namespace mpm
