@@ -43,7 +43,8 @@ LAYERS = {
     "device": 10,
     "run": 11,
 }
-TOGETHER = {"step", "rigid", "walls", "loads", "surfaces"}  # The stages: those of a subject in its folder.
+# The stages: those of a subject in its folder.
+TOGETHER = {"step", "rigid", "walls", "loads", "surfaces"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"][^>"]+)[>"]')
 PYTHON = re.compile(r'^[<"](nanobind/|pybind11/|Python\.h|numpy/)')
 

@@ -132,6 +132,8 @@ ContactSummary contact_summary(const Simulation<D>& simulation) {
   };
   ContactSummary told;
   told.overlapped = contact.counts.overlapped;
+  told.touching = all(simulation.domain.surfaces.touching);
+  told.touching_max = all(simulation.domain.surfaces.touching_max);
   told.overlapped_max = contact.counts.overlapped_max;
   told.bodies_max = contact.counts.bodies_max;
   told.unconverged = all(contact.unconverged.load());

@@ -105,7 +105,7 @@ void exchange_surfaces(Domain<D>& domain, StateStream& stream) {
   for (const SurfacePart<D>& part : surfaces.parts)
     if (part.as_one)
       stream.array(std::span(surfaces.places).subspan(part.first_point, part.points));
-  stream(surfaces.stored_push, surfaces.stored_rub);
+  stream(surfaces.stored_push, surfaces.stored_rub, surfaces.touching, surfaces.touching_max);
   if (!stream.restores()) return;
   StateStream::check(std::ranges::is_sorted(surfaces.on_hosts, {}, &ActingOnHost<D>::host),
                      damaged);

@@ -121,8 +121,9 @@ struct StageList {
 template <int D>
 constexpr StageList<D> without(const StageList<D>& list, const Stage<D>& stage) {
   StageList<D> rest;
+  const std::size_t left_out = list.find(stage);
   for (std::size_t k = 0; k < list.count; ++k)
-    if (k != list.find(stage)) rest.add(list.stages[k]);
+    if (k != left_out) rest.add(list.stages[k]);
   return rest;
 }
 

@@ -218,6 +218,8 @@ struct Surfaces {
   std::vector<std::uint32_t> place_on_hosts;    // scratch: of each host, 1 + where it is, or 0
   double stored_push = 0.0, stored_rub = 0.0;   // in the springs after the last step [J]
 
+  std::size_t touching = 0, touching_max = 0;  // points that are pushed, now and since the start
+
   bool exist() const { return !points.empty(); }
 };
 

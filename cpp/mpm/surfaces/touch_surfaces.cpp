@@ -72,11 +72,13 @@ void give_to_hosts(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
   Acting<D> acting(surfaces);
   surfaces.stored_push = surfaces.stored_rub = 0.0;
+  surfaces.touching = 0;
   for (const SurfacePart<D>& part : surfaces.parts) {
     surfaces.stored_push += part.stored_push;
     surfaces.stored_rub += part.stored_rub;
     for (const SurfaceTouch<D>& touch : part.touches) {
       if (!(touch.pushed > 0.0)) continue;
+      ++surfaces.touching;
       const Vec<double, D> place = surfaces.places[touch.point] + touch.arm;
       const bool rubbed = rubs(touch);
       acting.push(touch.point, touch.push);
@@ -91,6 +93,7 @@ void give_to_hosts(Domain<D>& domain) {
       }
     }
   }
+  surfaces.touching_max = std::max(surfaces.touching_max, surfaces.touching);
   acting.sort();
 }
 

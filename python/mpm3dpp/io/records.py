@@ -107,6 +107,8 @@ class WarningRecord:
 class ContactRecord:
     """Contact of the whole run: bodies, overlapped nodes at the end and at most, pairs, bytes.
 
+    `touching_points` are those of surfaces that touch without nodes.
+
     `unconverged_nodes` counts the solutions at nodes with several bodies that stopped short of
     the tolerance; 0 is usual.
     """
@@ -114,6 +116,8 @@ class ContactRecord:
     bodies: Count = 0
     overlapped_nodes: Count = 0
     overlapped_nodes_max: Count = 0
+    touching_points: Count = 0
+    touching_points_max: Count = 0
     bodies_per_node_max: Count = 0
     peak_bytes: Count = 0
     unconverged_nodes: Count = 0
@@ -140,6 +144,8 @@ def contact_of(simulation: Any, parts: Sequence[str]) -> ContactRecord:
         bodies=len(parts),
         overlapped_nodes=int(summary.get("overlapped_nodes", 0)),
         overlapped_nodes_max=int(summary.get("overlapped_nodes_max", 0)),
+        touching_points=int(summary.get("touching_points", 0)),
+        touching_points_max=int(summary.get("touching_points_max", 0)),
         bodies_per_node_max=int(summary.get("bodies_per_node_max", 0)),
         peak_bytes=int(summary.get("bytes", 0)),
         unconverged_nodes=int(summary.get("unconverged_nodes", 0)),

@@ -48,7 +48,7 @@ class Progress:
         dt: float,
         kinetic: float,
         internal: float,
-        contacts: int | None = None,
+        contacts: tuple[int, str] | None = None,
     ) -> None:
         """Tell where the run is; cheap enough to call at every step.
 
@@ -57,7 +57,8 @@ class Progress:
             step: steps made.
             dt: present time step [s].
             kinetic, internal: energies [J], J per metre in two dimensions.
-            contacts: overlapped nodes; None for a run without contact.
+            contacts: overlapped nodes, or points of surfaces in touch, and the word for them; None
+                for a run without contact.
         """
         done = min(1.0, max(0.0, time / self._end)) if self._end > 0 else 1.0
         self._line.show(done, lambda: self._text(time, step, dt, kinetic, internal, contacts))
@@ -73,7 +74,7 @@ class Progress:
         dt: float,
         kinetic: float,
         internal: float,
-        contacts: int | None,
+        contacts: tuple[int, str] | None,
     ) -> str:
         parts = [
             f"t {_short(time, 's', 4)}",
@@ -82,7 +83,7 @@ class Progress:
             f"internal {_short(internal, self._unit)}",
         ]
         if contacts is not None:
-            parts.append(f"contact {contacts} nodes")
+            parts.append(f"contact {contacts[0]} {contacts[1]}")
         parts.append(f"step {step}")
         return "  ".join(parts)
 

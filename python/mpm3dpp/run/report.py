@@ -27,20 +27,34 @@ def summary_lines(manifest: Manifest) -> list[str]:
     return [*lines, speed_line(manifest)]
 
 
+def _is_contact(stage: str) -> bool:
+    return stage.startswith("contact") or "surfaces" in stage.removeprefix("load surfaces")
+
+
 def contact_table(manifest: Manifest) -> list[str]:
     """Return the lines about contact: overlapped nodes, pairs, bytes, share of the step's time."""
     contact = manifest.contact
-    if not contact.overlapped_nodes_max:
+    if not contact.overlapped_nodes_max and not contact.touching_points_max:
         return []
     total = sum(manifest.stages.values()) or 1.0
-    share = sum(ns for name, ns in manifest.stages.items() if name.startswith("contact")) / total
+    share = sum(ns for name, ns in manifest.stages.items() if _is_contact(name)) / total
     unit = "J/m" if manifest.case.get("grid", {}).get("dimension") == 2 else "J"
     pairs = sum(p.pairs for p in contact.pairs)
+    where = (
+        f"{contact.overlapped_nodes:,} overlapped nodes at the end, "
+        f"{contact.overlapped_nodes_max:,} at most"
+    )
+    crowd = f", {contact.bodies_per_node_max} bodies at a node at most"
+    if contact.touching_points_max:
+        where = (
+            f"{contact.touching_points:,} points of surfaces touch at the end, "
+            f"{contact.touching_points_max:,} at most"
+        )
+        crowd = ""
     lines = [
-        f"contact: {contact.bodies:,} bodies, {contact.overlapped_nodes:,} overlapped nodes at the "
-        f"end, {contact.overlapped_nodes_max:,} at most, {pairs:,} "
-        f"{'pair' if pairs == 1 else 'pairs'}, {contact.bodies_per_node_max} bodies at a node at "
-        f"most, {contact.peak_bytes / 2**20:.2f} MiB, {share:.1%} of the step's time"
+        f"contact: {contact.bodies:,} bodies, {where}, {pairs:,} "
+        f"{'pair' if pairs == 1 else 'pairs'}{crowd}, {contact.peak_bytes / 2**20:.2f} MiB, "
+        f"{share:.1%} of the step's time"
     ]
     if contact.unconverged_nodes:
         lines.append(

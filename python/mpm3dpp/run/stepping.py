@@ -149,9 +149,9 @@ class Stepping:
         if due or ends or (touched > self._touched and core.time >= 0.0):
             results.write(core)
         self._touched = touched
-        overlapped = core.contact_summary()["overlapped_nodes"] if self._contact else None
+        touching = _touching(core.contact_summary()) if self._contact else None
         kinetic, internal = rows[-1, 3:5]
-        self._progress.update(core.time, core.step, core.dt, kinetic, internal, overlapped)
+        self._progress.update(core.time, core.step, core.dt, kinetic, internal, touching)
         if ends:
             return "completed", ends
         if self._notice.taken:
@@ -190,6 +190,12 @@ def tell(progress: Progress, problem: str) -> None:
     """Tell that there is no new checkpoint, if so."""
     if problem:
         progress.note(f"warning: no checkpoint: {problem}")
+
+
+def _touching(contact: dict[str, Any]) -> tuple[int, str]:
+    """Return how many nodes are overlapped, or points of surfaces touch, and the word for them."""
+    points = int(contact.get("touching_points", 0))
+    return (points, "points") if points else (int(contact["overlapped_nodes"]), "nodes")
 
 
 def _touched(pairs: list[Any]) -> int:
