@@ -319,7 +319,7 @@ def test_a_notebook_has_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     stream = Notebook()
     with Progress(1e-3, stream=stream) as bar:
         for k in range(11):
-            bar.update(1e-4 * k, k, 1e-4, 2.0, 1.0, 7)
+            bar.update(1e-4 * k, k, 1e-4, 2.0, 1.0, (7, "nodes"))
     text = stream.getvalue()
     assert text.count("\n") == 1 and text.endswith("\n") and text.count("\r") == 11
     last = text.strip().rpartition("\r")[2]

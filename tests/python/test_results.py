@@ -558,7 +558,7 @@ def test_result_hash_sees_the_last_bit() -> None:
 def test_progress_without_a_terminal(capsys: pytest.CaptureFixture[str]) -> None:
     with Progress(1e-3) as progress:
         for k in range(101):
-            progress.update(1e-5 * k, k, 1e-5, 2.0, 1.0, 7)
+            progress.update(1e-5 * k, k, 1e-5, 2.0, 1.0, (7, "nodes"))
     lines = capsys.readouterr().err.splitlines()
     assert 1 <= len(lines) <= 11
     assert "100%" in lines[-1]

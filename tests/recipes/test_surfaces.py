@@ -269,6 +269,14 @@ def test_restitution_is_what_is_given(given: float, wall: bool) -> None:
     )
     simulation, columns, _ = run(case)
     assert part(simulation, "velocity_x") / speed == pytest.approx(given, rel=0.02)
+    turned = part(simulation, "momentum_x") + part(simulation, "mass") * speed
+    if wall:
+        [face] = simulation.core.walls()
+        impulse = -face.impulse[0]  # what it is given
+    else:
+        [pair] = simulation.core.contact_pairs()
+        impulse = pair.impulse[0]
+    assert impulse == pytest.approx(turned, rel=1e-6)
     lost = columns["contact"][-1] / columns["kinetic"][0]
     assert lost == pytest.approx(1 - given**2, abs=0.03)  # The rest vibrates on.
 

@@ -90,8 +90,10 @@ void add_row(std::span<const NodeContact> nodes, double time_step, std::vector<d
 /// The row of bodies whose surfaces touch.
 template <int D>
 void add_row(const ActingBetween<D>& pair, double time_step, std::vector<double>& rows) {
-  const double push = norm(pair.push), rub = norm(pair.on_first - pair.push);
+  const double push = norm(pair.push);
   if (is_face(pair.b) || !(push > 0.0)) return;
+  const Vec<double, D> normal = (-1.0 / push) * pair.push;
+  const double rub = norm(pair.on_first - dot(pair.on_first, normal) * normal);
   const auto add = [&](const Vec<double, D>& vector) {
     const Vector3 v = in_space<D>(vector);
     rows.insert(rows.end(), v.c, v.c + 3);
@@ -99,7 +101,7 @@ void add_row(const ActingBetween<D>& pair, double time_step, std::vector<double>
   rows.push_back(pair.a);
   rows.push_back(pair.b);
   add((1.0 / pair.size) * pair.middle);
-  add((-1.0 / push) * pair.push);
+  add(normal);
   rows.push_back(-pair.overlap);
   add(pair.on_first);
   rows.push_back(rub > 0.0 && time_step > 0.0 ? pair.rubbed / (rub * time_step) : 0.0);

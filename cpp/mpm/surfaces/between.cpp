@@ -70,13 +70,15 @@ template <int D>
 void record_between(Domain<D>& domain) {
   PairRecords& records = domain.contact.records;
   const std::int64_t step = domain.step + 1;
+  // For as long as they have acted on the bodies.
+  const double acts = 0.5 * (domain.time_step + domain.step_before);
   records.begin_step();
   for (const ActingBetween<D>& pair : domain.surfaces.between) {
     if (is_face(pair.b)) continue;
     PairShare share{pair.a, pair.b, records.known(pair.a, pair.b, step)};
     double impulse[3] = {};
     for (int a = 0; a < D; ++a) {
-      impulse[a] = domain.time_step * pair.on_first[a];
+      impulse[a] = acts * pair.on_first[a];
       share.normal[a] = pair.normal[a];
       share.node[a] = pair.place[a];
     }
@@ -85,7 +87,7 @@ void record_between(Domain<D>& domain) {
     share.gap = -pair.overlap;
     records.add(share, step, domain.time_after);
   }
-  records.end_step(domain.time_step);
+  records.end_step(acts);
 }
 
 template void sum_between<2>(Domain<2>&);

@@ -46,6 +46,18 @@ void add_at(std::vector<ActingOnBody>& all, int body, const Vector3& push, const
   on.moment_of_rub += cross(place, rub);
 }
 
+/// What a face gives a body as a whole is told with what it gives its points.
+template <int D>
+void add_of_face(Surfaces<D>& surfaces, const ActingBetween<D>& pair, const Vector3& force,
+                 const Vector3& place) {
+  SurfacePart<D>& part =
+      *std::ranges::lower_bound(surfaces.parts, pair.a, {}, &SurfacePart<D>::body);
+  const unsigned face = 1u << (-1 - pair.b);
+  for (int a = 0; a < D; ++a) part.of_faces.add(face, a, force[a]);
+  part.moment_of_faces += cross(place, force);
+  part.at_faces = true;
+}
+
 }  // namespace
 
 template <int D>
@@ -53,7 +65,7 @@ void add_restitution(Domain<D>& domain) {
   if (!restitution_takes(domain.contact_settings)) return;
   Surfaces<D>& surfaces = domain.surfaces;
   const double dt = domain.time_step;
-  for (const ActingBetween<D>& pair : surfaces.between) {
+  for (ActingBetween<D>& pair : surfaces.between) {
     const PairLaw law = law_between(domain, pair);
     const double light = lightness(domain, pair.a) + lightness(domain, pair.b);
     const double e = law.restitution, push = norm(pair.push);
@@ -75,6 +87,8 @@ void add_restitution(Domain<D>& domain) {
         std::min(2.0 * beta * std::sqrt(pair.stiffness * mass), 0.25 * mass / dt) * swing;
     const Vector3 rub = swing > 0.0 ? (-std::min(drag, most) / swing) * along : Vector3::zero();
     const Vector3 back = -taken * normal;
+    for (int a = 0; a < D; ++a) pair.on_first[a] += back[a] + rub[a];
+    if (is_face(pair.b)) add_of_face(surfaces, pair, back + rub, place);
     add_at(surfaces.on_bodies, pair.a, back, rub, place);
     if (!is_face(pair.b)) add_at(surfaces.on_bodies, pair.b, -1.0 * back, -1.0 * rub, place);
   }
