@@ -56,8 +56,7 @@ struct ContactSettings {
       Setting{
           "restitution", &Self::restitution,
           "of surfaces that touch each other by contact points (frame = \"material\"): the speed "
-          "with which two bodies part over that with which they came, of those that are elastic; "
-          "below 1 a bed of grains comes to rest",
+          "with which two bodies part over that with which they came, of those that are elastic",
           Rule::share},
       Setting{"gap_distance", &Self::gap_distance, "bodies closer than this touch [m]",
               Rule::not_negative, "m"},
