@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from mpm3dpp import Case, Simulation, _core, open_results, run_case
+from same_bits import check_same_bits
 from worlds import check_worlds
 
 CELL, DENSITY, E = 1e-3, 1000.0, 1e7
@@ -276,24 +277,4 @@ def test_another_world_is_the_same(dimension: int) -> None:
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_the_same_bits(dimension: int, tmp_path: Any) -> None:
     """With any number of threads, stages fused or not, and after a restart."""
-    case = Case.from_text(several(dimension))
-    one = state(Simulation(case, threads=1))
-    assert one == state(Simulation(case, threads=3))
-    assert one == state(Simulation(case, threads=1, fused=False))
-    first = Simulation(case, threads=2)
-    first.advance(30)
-    first.save(tmp_path / "state.zip")
-    again = Simulation(case, threads=1)
-    again.restore(tmp_path / "state.zip")
-    assert state(first) == one
-    assert one == state(again)
-
-
-def state(simulation: Simulation) -> list[bytes]:
-    """Return the bytes of all columns and of the last row of the history, after 60 steps."""
-    simulation.advance(60 - simulation.step)
-    core = simulation.core
-    columns = [
-        core.column(b, column.name) for b in range(core.body_count) for column in core.columns(b)
-    ]
-    return [c.tobytes() for c in (*columns, core.history()[-1], np.array(core.part_sums()[1]))]
+    check_same_bits(Case.from_text(several(dimension)), tmp_path)
