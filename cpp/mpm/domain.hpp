@@ -52,8 +52,9 @@ struct Domain {
   double flip_share = 1.0, flip_share_of_gases = 1.0;
   double pic_rate = 0.0;  // at which particles take over the velocity of the grid [1/s]
 
-  int filter_order = 1;           // how often velocities are mapped to the grid and back ...
-  std::int64_t filter_every = 1;  // ... in each step whose number this divides
+  int filter_order = 1;             // how often velocities are mapped to the grid and back ...
+  double short_wave_damping = 0.0;  // of bodies on nodes of their own [c / h]
+  std::int64_t filter_every = 1;    // ... in each step whose number this divides
 
   double time = 0.0;         // [s]
   double time_after = 0.0;   // of the step being made [s]

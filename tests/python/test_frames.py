@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from mpm3dpp import Case, CaseError, Simulation
+from mpm3dpp.fill.advisories import notes
 from mpm3dpp.fill.build import build
 from mpm3dpp.run.summary import echo
 
@@ -49,7 +50,7 @@ def test_a_case_without_them_is_one() -> None:
     ("before", "after", "said"),
     [
         (GRID, f'{GRID}basis = "linear"\n', "needs gradients without jumps"),
-        (GRID, f'{GRID}box = {{ {BOX}, walls = "slip" }}\n', "walls of grid.box that are"),
+        (GRID, f'{GRID}box = {{ {BOX}, walls = "absorbing" }}\n', "walls of grid.box that absorb"),
         (GRID, f"{GRID}outflow_box = {{ {BOX} }}\n", "grid.outflow_box"),
         (GRID, f"{GRID}coarsening = {{ tiles = 9, times = 1 }}\n", "grid.coarsening"),
         ("enabled = false", "", "contact with b, which has another, yet"),
@@ -96,6 +97,56 @@ def test_what_is_for_contact_at_nodes_is_not_for_them(given: str, said: str) -> 
         Case.from_text(both.replace("enabled = false", given))
     messages = [str(told.value), *map(str, getattr(told.value, "others", []))]
     assert any('body.a.frame = "material"' in m and said in m and ";" in m for m in messages)
+
+
+def test_walls_that_hold_them_and_contact() -> None:
+    walls = f'{GRID}box = {{ {BOX}, walls = "slip" }}\n'
+    both = CASE.replace('[body.b]\nmaterial = "m"\n', f'[body.b]\nmaterial = "m"\n{A}')
+    text = both.replace(GRID, walls)
+    Case.from_text(text)  # without contact
+    with pytest.raises(CaseError, match="slip or fixed where bodies touch each other, yet"):
+        Case.from_text(text.replace("enabled = false", ""))
+
+
+@pytest.mark.parametrize("wall", ["slip", "fixed"])
+def test_walls_hold_what_begins_on_them(wall: str) -> None:
+    """A body that begins near one is refused, one that begins far off is told of."""
+
+    def case(away: float) -> Case:
+        shape = {"box": {"lower": [away, 0.0], "upper": [away + 8e-3, 8e-3]}}
+        box = {"lower": [0.0, -0.04], "upper": [0.04, 0.04], "walls": {"x_min": wall}}
+        return Case.model_validate(
+            {
+                "grid": {"dimension": 2, "cell_size": 1e-3, "box": box},
+                "run": {"end_time": 1e-3},
+                "material": {
+                    "m": {"density": 1000.0, "strength": {"elastic": {"E": 1e6, "nu": 0.3}}}
+                },
+                "body": {"b": {"material": "m", "frame": "material", "shape": shape}},
+            }
+        )
+
+    def told_of(away: float) -> list[str]:
+        of = case(away)
+        return [one for one in notes(of, build(of)) if "grid.box.walls" in one]
+
+    assert not told_of(0.0)
+    with pytest.raises(
+        CaseError, match=r"begins 0\.00\d+ m from grid\.box\.walls\.x_min: slip and"
+    ):
+        told_of(1e-3)
+    [told] = told_of(4e-3)
+    assert "begins 0.00425 m from grid.box.walls.x_min, which will not stop it" in told
+
+
+def test_short_waves_are_damped_of_them_alone() -> None:
+    damped = f"{RUN}short_wave_damping = 0.01\n"
+    assert Case.from_text(CASE.replace(RUN, damped)).run.short_wave_damping == 0.01
+    with pytest.raises(CaseError, match="short_wave_damping is for bodies with frame ="):
+        Case.from_text(CASE.replace(A, "").replace(RUN, damped))
+    text = CASE.replace(RUN, damped).replace(GRID, f'{GRID}basis = "gimp"\n')
+    with pytest.raises(CaseError, match="has no affine part of a velocity"):
+        Case.from_text(text)
 
 
 def test_restitution_is_for_them() -> None:

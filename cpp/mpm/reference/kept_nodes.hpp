@@ -32,6 +32,44 @@ struct KeptNodes {
     F.assign(body.particles.size(), one);
   }
 
+  /// v -= R G R v of damp_short_waves.cpp, (W1); c over h for the time between such steps is
+  /// `waves`, and `whole` the mass of which nodes have less that are damped at b, by a the rest.
+  void damp_short_waves(double waves, double a, double b, double whole) {
+    using Velocities = std::map<Index<D>, Vec<double, D>>;
+    const auto unseen = [&](const Velocities& v) {
+      Velocities r = v;
+      for (const Particle<D>& p : body.particles) {
+        Vec<double, D> mean = Vec<double, D>::zero();
+        Mat<double, D> C{};
+        const auto arm = [&](const Index<D>& i, int k) {
+          return step.h * i[static_cast<std::size_t>(k)] - p.X[k];
+        };
+        step.for_each_node(p.X, [&](const Index<D>& i, double N, const Vec<double, D>&) {
+          for (int k = 0; k < D; ++k) {
+            mean[k] += N * v.at(i)[k];
+            for (int l = 0; l < D; ++l)
+              C[k][l] += N * v.at(i)[k] * arm(i, l) / (0.25 * step.h * step.h);
+          }
+        });
+        step.for_each_node(p.X, [&](const Index<D>& i, double N, const Vec<double, D>&) {
+          for (int k = 0; k < D; ++k) {
+            double seen = mean[k];
+            for (int l = 0; l < D; ++l) seen += C[k][l] * arm(i, l);
+            r[i][k] -= p.m * N * seen / body.nodes[i].m;
+          }
+        });
+      }
+      return r;
+    };
+    Velocities v;
+    for (const auto& [i, node] : body.nodes) v[i] = node.v;
+    Velocities taken = unseen(v);
+    for (auto& [i, r] : taken)
+      r = std::min(waves * (a + b * std::max(1.0 - body.nodes[i].m / whole, 0.0)), 1.0) * r;
+    taken = unseen(taken);
+    for (auto& [i, node] : body.nodes) node.v -= taken[i];
+  }
+
   /// f_i = m_i g - sum V_p sigma_p F_p^-T grad_X N_ip, (M2).
   void map_forces() {
     for (auto& [i, node] : body.nodes) node.f = node.m * step.g;

@@ -22,13 +22,23 @@ double least_moment(const Matrix3& inertia) {
   return std::min({principal.value[0], principal.value[1], principal.value[2]});
 }
 
+/// Do walls hold nodes of a body? It turns about these then.
+template <int D>
+bool is_held(const Domain<D>& domain, int body) {
+  return std::ranges::any_of(patches_of<D>(domain.grid.patches, body), [&](const Patch<D>& patch) {
+    bool held = false;
+    for_each_constrained_node(domain.grid, patch, [&](int, unsigned) { held = true; });
+    return held;
+  });
+}
+
 }  // namespace
 
 template <int D>
 void list_kept_spins(Domain<D>& domain) {
   const std::vector<PartSums> parts = sums_of_bodies(domain, SumsOf::particles);
   for (std::size_t b = 0; b < parts.size(); ++b) {
-    if (!domain.bodies[b].keeps_nodes()) continue;
+    if (!domain.bodies[b].keeps_nodes() || is_held(domain, static_cast<int>(b))) continue;
     KeptSpin turning;
     turning.body = static_cast<int>(b);
     turning.mass = parts[b].mass;

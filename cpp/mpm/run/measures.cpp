@@ -96,7 +96,7 @@ std::size_t bytes_of_surfaces(const Surfaces<D>& surfaces) {
   std::size_t parts = size(surfaces.parts);
   for (const SurfacePart<D>& part : surfaces.parts)
     parts += size(part.touches) + size(part.slips) + size(part.new_slips) + size(part.near_of) +
-             size(part.near) + size(part.felt);
+             size(part.awake_of) + size(part.awake) + size(part.near) + size(part.felt);
   return parts + size(surfaces.part_of) + size(surfaces.hosts) + size(surfaces.points) +
          size(surfaces.places) + size(surfaces.set_back) + size(surfaces.places_of_lists) +
          size(surfaces.motions) + size(surfaces.place_of_motion) + size(surfaces.between) +

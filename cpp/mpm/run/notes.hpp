@@ -23,11 +23,13 @@ enum class NoteKind {
   unsettled,
   gas_volume,
   sparse,
-  sparse_gas
+  sparse_gas,
+  deep
 };
-inline constexpr std::array note_names = {
-    "time step",    "energy of a step", "load",       "outside walls",    "volume",    "left box",
-    "crowded node", "unsettled",        "gas volume", "sparse particles", "sparse gas"};
+inline constexpr std::array note_names = {"time step",        "energy of a step", "load",
+                                          "outside walls",    "volume",           "left box",
+                                          "crowded node",     "unsettled",        "gas volume",
+                                          "sparse particles", "sparse gas",       "deep surface"};
 
 /// Told once for each kind and body (the first of its group), then counted. Trivially copyable, so
 /// that a checkpoint holds it.

@@ -76,7 +76,9 @@ void prepare(Simulation<D>& simulation) {
   check_setting(!domain.bodies.empty(), "there is no body");
   check_bodies(domain);
   simulation.phase = Phase::broken;  // until all is done
-  domain.surfaces.meet = domain.has_contact() && !domain.surfaces.given.empty();
+  // A body alone may touch itself.
+  domain.surfaces.meet = domain.contact_settings.enabled && !domain.contact_settings.bonded &&
+                         !domain.surfaces.given.empty();
   domain.grid.partition.shares_tiles = domain.has_contact();
   add_contact_columns(domain);
   find_held_bodies(simulation);

@@ -131,6 +131,7 @@ struct RunSettings {
   std::optional<double> time_step, largest_time_step;
   std::array<TimeFunction, 3> gravity{};
   TransferSettings transfer;
+  double short_wave_damping = 0.0;
   std::optional<SettleSettings> settle;
   double energy_growth_limit = 1.0;
   double outside_limit = 0.05;
@@ -155,6 +156,10 @@ struct RunSettings {
       Setting{"gravity", &Self::gravity,
               "acceleration [m/s^2], D numbers or functions of time; default zero", Rule::any,
               "m/s^2"},
+      Setting{"short_wave_damping", &Self::short_wave_damping,
+              "bodies on nodes of their own lose what their particles do not see of the nodes' "
+              "velocities at this rate, over the wave speed and the cells' size; 0 for never",
+              Rule::not_negative},
       Setting{"energy_growth_limit", &Self::energy_growth_limit,
               "the run stops when the numerical error has created this share of the largest energy "
               "seen",

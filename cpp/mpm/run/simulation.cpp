@@ -95,6 +95,7 @@ Simulation<D>::Simulation(const Settings& given, Comm* comm) : settings(checked(
   domain.flip_share_of_gases = given.run.transfer.flip_share_of_gases();
   domain.pic_rate = given.run.transfer.pic_rate;
   domain.filter_order = given.run.transfer.xpic;
+  domain.short_wave_damping = given.run.short_wave_damping;
   domain.filter_every = given.run.transfer.every;
   domain.disorder = given.execution.disorder;
   domain.balance_every = given.execution.balance_every;

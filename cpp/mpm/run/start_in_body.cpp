@@ -13,6 +13,7 @@
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/transfer/flip.hpp"
 #include "mpm/step/transfer/mapping.hpp"
+#include "mpm/surfaces/restitution.hpp"
 
 namespace mpm {
 namespace {
@@ -67,6 +68,13 @@ void take_from_particles(Domain<D>& domain, const std::vector<bool>& bodies) {
   });
 }
 
+/// A block with the second halves of its records in the place of the first.
+template <int D>
+NodeBlock<D> second_halves(NodeBlock<D> block) {
+  block.records.data += half_record;
+  return block;
+}
+
 /// The mass that particles give to nodes, and the mean of their velocities there, m_i v_i = sum m_p
 /// v_p N_ip.
 template <int D>
@@ -79,15 +87,13 @@ void give_to_nodes(Domain<D>& domain, const std::vector<bool>& bodies) {
     scatter<Mapping<Flip>, gives_mass | gives_momentum>(
         domain.grid, domain.body_of(patch), domain.pool_of(patch), patch,
         NodeRecords{block.records.data + half_record});
+    fold_at_walls(domain.grid, patch, second_halves(block), momentum_at);
   });
   sum_shared_nodes(domain.grid, domain.threads, half_record, record);
   for_each_meant(domain, bodies, [&](std::size_t p) {
-    const NodeBlock<D> block = domain.grid.block(p);
-    for (int n = 0; n < block.count; ++n) {
-      double* const numbers = block.records[n];
-      const double m = numbers[given_mass];
-      for (int a = 0; a < D; ++a) numbers[given_velocity + a] *= m > 0.0 ? 1.0 / m : 0.0;
-    }
+    const NodeBlock<D> given = second_halves(domain.grid.block(p));
+    momentum_to_velocity(domain.grid, domain.grid.patches[p], given, velocity_at);
+    reflect_at_walls(domain.grid, domain.grid.patches[p], given, velocity_at);
   });
 }
 
@@ -130,6 +136,7 @@ void begin_with_rigid_motions(Domain<D>& domain, const std::vector<bool>& bodies
       const Vector3 v = velocity + cross(spin, arm);
       for (int a = 0; a < D; ++a) block.records[n][velocity_at + a] = m > 0.0 ? v[a] : 0.0;
     }
+    hold_kept_nodes(domain.grid, patch, block);
   });
 }
 
@@ -163,10 +170,16 @@ void check_in_body(const Simulation<D>& simulation) {
               "contact.enabled = false");
   check_frame(domain.bodies.size() == 1 || !s.contact.bonded,
               "bonded bodies yet: give frame = \"updated\"");
-  const bool others = std::ranges::any_of(
-      s.grid.walls, [](Wall w) { return w != Wall::free && w != Wall::contact; });
-  check_frame(s.grid.box_cells[0] == 0 || !others,
-              "walls of the box that are not \"contact\" yet: give these, or frame = \"updated\"");
+  const bool box = s.grid.box_cells[0] > 0;
+  check_frame(!box || std::ranges::find(s.grid.walls, Wall::absorbing) == s.grid.walls.end(),
+              "walls of the box that absorb yet: leave them out, or give frame = \"updated\"");
+  const bool holds =
+      std::ranges::any_of(s.grid.walls, [](Wall w) { return w == Wall::slip || w == Wall::fixed; });
+  check_frame(!box || !holds || domain.bodies.size() == 1 || !s.contact.enabled,
+              "walls of the box that are slip or fixed where bodies touch each other yet: give "
+              "\"contact\", or contact.enabled = false");
+  check_frame(!box || !holds || !restitution_takes(s.contact),
+              "walls of the box that are slip or fixed and a restitution yet: leave one out");
   check_frame(!s.grid.outflow, "a region that particles leave: give frame = \"updated\"");
   check_frame(!s.grid.coarsening, "grid.coarsening: give frame = \"updated\"");
   for (const SurfaceLoad<D>& load : domain.loads)

@@ -85,6 +85,22 @@ bool is_finite(const Vec<double, D>& v) {
   return std::isfinite(dot(v, v));
 }
 
+/// How fast points close limits the step, and is known by the lists: they are made where they were.
+template <int D>
+void exchange_lists(Domain<D>& domain, StateStream& stream) {
+  Surfaces<D>& surfaces = domain.surfaces;
+  if (stream.restores()) surfaces.places_of_lists.resize(surfaces.points.size());
+  stream.array(std::span(surfaces.places_of_lists));
+  stream(surfaces.time_of_lists, surfaces.closing);
+  if (!stream.restores()) return;
+  StateStream::check(std::ranges::all_of(surfaces.places_of_lists, is_finite<D>) &&
+                         std::isfinite(surfaces.closing),
+                     damaged);
+  std::swap(surfaces.places, surfaces.places_of_lists);
+  make_near_lists(domain);
+  std::swap(surfaces.places, surfaces.places_of_lists);
+}
+
 }  // namespace
 
 template <int D>
@@ -106,6 +122,7 @@ void exchange_surfaces(Domain<D>& domain, StateStream& stream) {
     if (part.as_one)
       stream.array(std::span(surfaces.places).subspan(part.first_point, part.points));
   stream(surfaces.stored_push, surfaces.stored_rub, surfaces.touching, surfaces.touching_max);
+  if (surfaces.meet) exchange_lists(domain, stream);
   if (!stream.restores()) return;
   StateStream::check(std::ranges::is_sorted(surfaces.on_hosts, {}, &ActingOnHost<D>::host),
                      damaged);

@@ -40,6 +40,20 @@ std::string too_sparse(const std::string& whose, double per_cent) {
   return text.str();
 }
 
+/// Of a surface; `share`: of the depth of contact points.
+std::string deep_in_another(const std::string& whose, double share) {
+  std::ostringstream text;
+  text.precision(4);
+  text
+      << "the surface of " << whose << " lies " << share
+      << " of the depth of contact points deep in another, and springs hold what is less than one: "
+         "bodies that meet at more than a fifth of the speed of waves, or are pressed by a fifth "
+         "of "
+         "their stiffness, go through each other; give frame = \"updated\", or fewer "
+         "particles_per_cell, by which points lie deeper";
+  return text.str();
+}
+
 /// What is so, and what can be done. `whose`: the body, or all of its entry.
 std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded) {
   std::ostringstream text;
@@ -88,6 +102,9 @@ std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded
     case NoteKind::crowd:
       text << n.value << " bodies meet at one node, and the time of a step grows with the square "
            << "of their number; give smaller cells, larger grains, or one body in place of many";
+      break;
+    case NoteKind::deep:
+      text << deep_in_another(whose, n.value);
       break;
     case NoteKind::unsettled:
       text << "run.settle.longest was over before forces balanced: those out of balance were "

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <sstream>
 
-#include "mpm/contact/crowd.hpp"
 #include "mpm/run/find_failure.hpp"
 #include "mpm/run/time_step.hpp"
 #include "mpm/run/use_device.hpp"
 #include "mpm/run/warnings.hpp"
+#include "mpm/run/watch_contact.hpp"
 
 namespace mpm {
 namespace {
@@ -23,53 +23,15 @@ constexpr double large_in_cells = 100.0;
 constexpr double far_apart = 1.5;   // cells
 constexpr double many_gaps = 0.01;  // of a body's cells, more than at the start
 constexpr double beyond = 0.1;  // of a cell, behind a wall: GIMP may push a centre a little past it
-// At a node: each meets each, 435 pairs. Equal spheres have twelve neighbours, grains of two cells
-// ten.
-constexpr int many_bodies = 30;
 
 std::size_t number(int k) { return static_cast<std::size_t>(k); }
 
-/// Count something that is so about a body, and note it if that is new.
-template <int D>
-void note(Simulation<D>& simulation, Note found) {
-  const Domain<D>& domain = simulation.domain;
-  std::vector<Note>& notes = simulation.watch.notes;
-  found.group = domain.body_at(found.body).group;
-  found.step = domain.step;
-  found.time = domain.time;
-  for (Note& known : notes)
-    if (known.kind == found.kind && known.group == found.group && known.face == found.face) {
-      ++known.count;
-      known.share = std::max(known.share, found.share);
-      return;
-    }
-  notes.push_back(found);
-  notes.back().count = 1;
-}
-
-/// The same about a particle.
+/// Note something about a particle.
 template <int D>
 void note_at(Simulation<D>& simulation, Note found, const ParticleAt& at) {
   found.body = at.body;
   found.particle = at.particle;
   found.position = at.position;
-  note(simulation, found);
-}
-
-/// Note the first node at which so many bodies meet that steps take long, and count such steps.
-template <int D>
-void watch_crowd(Simulation<D>& simulation) {
-  const Domain<D>& domain = simulation.domain;
-  if (domain.contact.counts.bodies_max <= many_bodies) return;
-  const Crowd most = largest_crowd(domain.contact, domain.grid);
-  if (most.bodies <= many_bodies) return;
-  for (Note& known : simulation.watch.notes)
-    if (known.kind == NoteKind::crowd) {
-      ++known.count;
-      return;
-    }
-  Note found{.kind = NoteKind::crowd, .body = most.body, .value = static_cast<double>(most.bodies)};
-  std::copy(std::begin(most.position), std::end(most.position), found.position.begin());
   note(simulation, found);
 }
 
@@ -174,7 +136,7 @@ template <int D>
 void watch_step(Simulation<D>& simulation) {
   const Domain<D>& domain = simulation.domain;
   StepWatch& watch = simulation.watch.steps;
-  watch_crowd(simulation);
+  watch_contact(simulation);
   const double median = watch.median_fallen_below(simulation.next_time_step);
   const double made = watch.energy_made(domain.ledger.made(), domain.ledger.largest);
   const double work =

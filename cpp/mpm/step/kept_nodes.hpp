@@ -49,6 +49,17 @@ void for_each_kept_node(TileGrid<D>& grid, const Patch<D>& patch, F&& f) {
       f(m, place_of_kept(grid, patch, block, n), in_space<D>(block.vector(n, velocity_at)));
 }
 
+/// What walls hold of vectors of a patch's nodes: those on them, and those beyond by their images.
+template <int D>
+void hold_kept_nodes(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlock<D>& block,
+                     int at = velocity_at) {
+  for_each_constrained_node(grid, patch, [&](int node, unsigned constrained) {
+    for (int a = 0; a < D; ++a)
+      if (constrained >> a & 1u) block.records[node][at + a] = 0.0;
+  });
+  reflect_at_walls(grid, patch, block, at);
+}
+
 /// For how long the forces of a step act on the nodes of a patch [s].
 template <int D>
 double time_of_forces(const Domain<D>& domain, const Patch<D>& patch) {
@@ -87,7 +98,7 @@ void count_kept_nodes(const Domain<D>& domain, double gained, PatchSums<D>& sums
   sums.force_work = gained - external - sums.surface_push - sums.surface_rub;
   sums.kept_ahead += 0.5 * external;
   // Affine transfers count all that kinetic energy loses, and what forces have given against it.
-  if (is_affine(domain.transfer)) sums.transferred = -gained;
+  if (is_affine(domain.transfer)) sums.transferred -= gained;
 }
 
 }  // namespace mpm

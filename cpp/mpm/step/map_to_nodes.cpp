@@ -11,9 +11,12 @@ namespace {
 template <int D>
 void map_kept_patch(Domain<D>& domain, std::size_t p) {
   const Patch<D>& patch = domain.grid.patches[p];
-  const NodeRecords nodes = domain.grid.block(p).records;
-  for (int n = 0; n < patch.shape.node_count; ++n)
-    Batch<half_record>(0.0).store(nodes[n] + force_at);
+  const NodeBlock<D> block = domain.grid.block(p);
+  const NodeRecords nodes = block.records;
+  clear(nodes.at(force_at), block.count, half_record);
+  // Their masses are the sums already, so that the owner of a node beyond a wall has all of it.
+  for_each_ghost_weight(domain, patch, block,
+                        [&](int image, int a, double weight) { block.force(a)[image] -= weight; });
   with_basis_and_lanes(
       domain.grid, domain.body_of(patch), patch, [&]<BasisModel B>(const B& basis, auto lanes) {
         if constexpr (B::nodes > 2)

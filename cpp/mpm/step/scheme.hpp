@@ -31,6 +31,7 @@ struct Schemes {
   static constexpr StageList<D> usf = std::array{
       S::activate,
       S::filter,
+      S::damp_short_waves,
       S::map_momentum,
       S::fold_momentum,
       S::exchange_momentum,
@@ -71,6 +72,7 @@ struct Schemes {
   static constexpr StageList<D> usl = std::array{
       S::activate,
       S::filter,
+      S::damp_short_waves,
       S::map_momentum,
       S::fold_momentum,
       S::exchange_momentum,
@@ -112,6 +114,7 @@ struct Schemes {
   static constexpr StageList<D> musl = std::array{
       S::activate,
       S::filter,
+      S::damp_short_waves,
       S::map_momentum,
       S::fold_momentum,
       S::exchange_momentum,
@@ -168,8 +171,8 @@ struct Schemes {
     if (extra != Extra::filter) rest = without(rest, S::filter);
     if (extra != Extra::release) rest = without(without(rest, S::release), S::restore);
     if (in_body) return rest;
-    for (const Stage<D>& stage : {S::load_by_surfaces, S::turn_in_body, S::update_in_body,
-                                  S::push_rigid, S::touch_surfaces})
+    for (const Stage<D>& stage : {S::damp_short_waves, S::load_by_surfaces, S::turn_in_body,
+                                  S::update_in_body, S::push_rigid, S::touch_surfaces})
       rest = without(rest, stage);
     return rest;
   }

@@ -13,6 +13,10 @@ void activate_tiles(Domain<D>& domain);
 template <int D>
 void filter_velocities(Domain<D>& domain);
 
+/// What particles of bodies on nodes of their own hardly see of the velocities of these.
+template <int D>
+void damp_short_waves(Domain<D>& domain);
+
 /// Nodal mass and momentum from the particles, eqs. (2)-(3). Clears all fields of the nodes, and
 /// leaves what walls with images mirror of the weight (ghost weights).
 template <int D>

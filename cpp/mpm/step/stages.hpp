@@ -36,6 +36,10 @@ struct Stages : Data {
   // correction; velocities stay until they are advanced, as the energies are those of FLIP's step.
   static constexpr Row filter{"filter velocities", mpm::filter_velocities<D>, lists | of_particles,
                               unseen | node_mass | node_velocity, true};
+  // Likewise, with the places of the forces for itself.
+  static constexpr Row damp_short_waves{"damp short waves in bodies", mpm::damp_short_waves<D>,
+                                        lists | mass | kept_nodes | kept_spins | patch_sums,
+                                        kept_nodes | kept_spins | patch_sums | node_force, true};
   static constexpr Row map_momentum{
       "map momentum",
       mpm::map_momentum<D>,

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mpm/math/double_math.hpp"
 #include "mpm/surfaces/surfaces.hpp"
 
 namespace mpm {
@@ -36,9 +37,10 @@ class SurfacePoint {
   double zeta, by_sum;  // and its derivative with respect to S
 
   /// What a point of the surface at that squared distance adds to the sum, times e^(D - 1).
-  static double weight(double square, double spacing) {
-    const double y = 1.0 - square / (reach_squared * spacing * spacing);
-    return y > 0.0 ? power_of<n>(y) : 0.0;
+  template <class T>
+  static T weight(T square, double spacing) {
+    const T y = max(T(1.0) - T(1.0 / (reach_squared * spacing * spacing)) * square, T(0.0));
+    return power_of<n>(y);
   }
   /// d w / d x_q over x_q - x_p.
   static double slope(double square, double spacing) {
@@ -58,9 +60,9 @@ class SurfacePoint {
   // Deeper than this zeta the surface has no height any more, and the force stays as it is.
   static constexpr double least_zeta_squared = 0.01;
 
-  template <int exponent>
-  static constexpr double power_of(double x) {
-    double r = x;
+  template <int exponent, class T>
+  static constexpr T power_of(T x) {
+    T r = x;
     for (int k = 1; k < exponent; ++k) r *= x;
     return r;
   }

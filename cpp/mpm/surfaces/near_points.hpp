@@ -8,4 +8,8 @@ namespace mpm {
 template <int D>
 void find_near_points(Domain<D>& domain);
 
+/// Make all lists anew, by where the points are.
+template <int D>
+void make_near_lists(Domain<D>& domain);
+
 }  // namespace mpm

@@ -1,5 +1,8 @@
 #include "mpm/surfaces/overlaps.hpp"
 
+#include <span>
+
+#include "mpm/fields/lanes.hpp"
 #include "mpm/surfaces/felt.hpp"
 #include "mpm/surfaces/law.hpp"
 
@@ -47,18 +50,35 @@ double face_of_spacing(const Surfaces<D>& surfaces) {
   return D == 2 ? surfaces.spacing : surfaces.spacing * surfaces.spacing;
 }
 
-/// The sum of the weights of the points of another body around a point, (S3).
+/// Rounds to multiples of 2^-44, of which sums below 2^8 are exact: their order does not matter,
+/// nor how many lists hold that are not felt.
+template <class T>
+T in_steps(T share) {
+  const T far(1.5 * 256.0);  // 2^52 steps are 2^8
+  return (share + far) - far;
+}
+
+/// The sum of the weights of the points of another body around a point over e^(D - 1), (S3).
 template <int D>
 double sum_of_weights(const Surfaces<D>& surfaces, const SurfacePart<D>& part,
                       const NearPoints& near) {
+  constexpr int W = contact_lanes;
   const Vec<double, D> here = surfaces.places[near.point];
-  double sum = 0.0;
-  for (std::uint32_t k = near.first; k < near.first + near.count; ++k) {
-    const std::uint32_t q = part.near[k];
-    const Vec<double, D> way = surfaces.places[q] - here;
-    sum += surfaces.points[q].area * SurfacePoint<D>::weight(dot(way, way), surfaces.spacing);
-  }
-  return sum / face_of_spacing(surfaces);
+  const Batch<W> per_face(1.0 / face_of_spacing(surfaces));
+  Batch<W> sums(0.0);
+  for_each_lanes<W>(part.awake.data() + near.first, near.count, [&](const auto& rows) {
+    Batch<W> square(0.0), area(0.0);
+    for (int k = 0; k < W; ++k) area.v[k] = surfaces.points[rows[k]].area;
+    for (int a = 0; a < D; ++a) {
+      Batch<W> way(0.0);
+      for (int k = 0; k < W; ++k) way.v[k] = surfaces.places[rows[k]][a];
+      way -= Batch<W>(here[a]);
+      square = fma(way, way, square);
+    }
+    const Batch<W> weight = SurfacePoint<D>::weight(square, surfaces.spacing);
+    sums += of_valid(rows, in_steps(area * per_face * weight));
+  });
+  return sum(sums);
 }
 
 /// A point that overlaps another body by e - e zeta - b, with the points of this that it feels.
@@ -80,7 +100,7 @@ void add_touch_of_body(const Domain<D>& domain, SurfacePart<D>& part, const Near
   const Vec<double, D> here = surfaces.places[near.point];
   Vec<double, D> slopes = Vec<double, D>::zero();
   for (std::uint32_t k = near.first; k < near.first + near.count; ++k) {
-    const std::uint32_t q = part.near[k];
+    const std::uint32_t q = part.awake[k];
     const Vec<double, D> way = surfaces.places[q] - here;
     const double square = dot(way, way), weight = SurfacePoint<D>::weight(square, e);
     if (!(weight > 0.0)) continue;
@@ -88,8 +108,11 @@ void add_touch_of_body(const Domain<D>& domain, SurfacePart<D>& part, const Near
     // do/dx_q = - e dzeta/dS a_q dw/dx_q
     const double slope = -e * in.by_sum * area * share * sum * SurfacePoint<D>::slope(square, e);
     part.felt.push_back({q, area * weight * share, slope * way});
-    slopes += slope * way;
   }
+  // In an order that lists have not.
+  const auto felt = std::span(part.felt).subspan(touch.first_felt);
+  std::ranges::sort(felt, {}, &FeltPoint<D>::point);
+  for (const FeltPoint<D>& one : felt) slopes += one.slope;
   touch.felt = static_cast<std::uint32_t>(part.felt.size()) - touch.first_felt;
   touch.slope = slopes;
   touch.arm = (-0.5 * e * in.zeta) * normalised(slopes);
@@ -97,12 +120,12 @@ void add_touch_of_body(const Domain<D>& domain, SurfacePart<D>& part, const Near
 }
 
 /// f(near points, the sum of their weights) for the bodies that a point overlaps, from the first of
-/// SurfacePart::near_of that are not before it on; `least`: of the sum.
+/// SurfacePart::awake_of that are not before it on; `least`: of the sum.
 template <int D, class F>
 void for_each_body(const Surfaces<D>& surfaces, const SurfacePart<D>& part, std::uint32_t point,
                    double least, std::size_t& next, F&& f) {
-  for (; next < part.near_of.size() && part.near_of[next].point == point; ++next) {
-    const NearPoints& near = part.near_of[next];
+  for (; next < part.awake_of.size() && part.awake_of[next].point == point; ++next) {
+    const NearPoints& near = part.awake_of[next];
     if (surfaces.moved < near.sleeps_until) continue;
     const double sum = sum_of_weights(surfaces, part, near);
     if (sum > least) f(near, sum);

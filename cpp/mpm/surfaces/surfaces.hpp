@@ -1,10 +1,11 @@
 #pragma once
 // Contact between the surfaces of bodies: plain data. Each body has contact points on the surface
 // that its shape has, each carried by the particle nearest to it, its host. A step ends with
-//   place_points.hpp   where they are, x_c = x_p + F_p d;
-//   find_touches.hpp   which of them overlap a face of the box or another body, and how deep;
-//   law.hpp            springs that follow from an energy, and Coulomb friction that remembers;
-//   host_forces.hpp    what comes to the hosts, and from these to their nodes in the next step.
+//   parts.hpp           where they are, x_c = x_p + F_p d
+//   near_points.hpp     which may feel each other: lists
+//   overlaps.hpp        which overlap a face of the box or another body, and how deep (felt.hpp)
+//   press.hpp           springs of an energy, and Coulomb friction that remembers (law.hpp)
+//   touch_surfaces.cpp  what comes to the hosts, and from these to their nodes in the next step
 #include <algorithm>
 #include <cstdint>
 #include <functional>
@@ -110,7 +111,7 @@ struct FeltPoint {
 struct NearPoints {
   std::uint32_t point = 0;
   std::int32_t body = 0;
-  std::uint32_t first = 0, count = 0;  // of SurfacePart::near
+  std::uint32_t first = 0, count = 0;  // of SurfacePart::near, or awake
   // They cannot be felt until some point has moved by so much since the lists were made [m].
   double sleeps_until = 0.0;
 };
@@ -186,19 +187,29 @@ struct SurfacePart {
   double stored_push = 0.0, stored_rub = 0.0;                   // in the springs [J]
   std::vector<NearPoints> near_of;                              // by point and body
   std::vector<std::uint32_t> near;                              // points
-  std::vector<FeltPoint<D>> felt;                               // by touches
+  std::vector<NearPoints> awake_of;                             // of these what may be felt by now
+  std::vector<std::uint32_t> awake;
+  std::vector<FeltPoint<D>> felt;  // by touches
   // By the faces of the box in the coming step, with the moment about the origin [N, N m].
   FaceImpulses<D> of_faces;
   Vector3 moment_of_faces = Vector3::zero();
   bool at_faces = false;  // is there any?
 };
 
+/// The point that is deepest in the surface of another body after a step.
+template <int D>
+struct DeepestPoint {
+  int body = -1;
+  double overlap = 0.0;  // [m]
+  Vec<double, D> place = Vec<double, D>::zero();
+};
+
 template <int D>
 struct Surfaces {
   std::vector<GivenPoint<D>> given;  // until the bodies have rows
-  double spacing = 0.0;              // of the points of all bodies [m]
-  double onset = 0.0;  // way over which springs begin, that of a step at the start [m]
-  bool meet = false;   // do bodies touch each other by them?
+  double spacing = 0.0;  // e: the points of all bodies lie half of it behind their surfaces [m]
+  double onset = 0.0;    // way over which springs begin, that of a step at the start [m]
+  bool meet = false;     // do bodies touch each other by them?
 
   std::vector<SurfacePart<D>> parts;            // by body, then by tile
   std::vector<std::int32_t> part_of;            // of each patch; -1: it has none
@@ -208,16 +219,20 @@ struct Surfaces {
   std::vector<KeptOfContact<double>> set_back;  // by how much they overlapped at the start [m]
 
   std::vector<Vec<double, D>> places_of_lists;  // where points were when NearPoints were found
+  double time_of_lists = 0.0;                   // and when that was [s]
   double moved = 0.0;                           // by the farthest of them since [m]
-  std::vector<HostMotion<D>> motions;           // of hosts in touch
-  std::vector<std::uint32_t> moving;            // the numbers of these
-  std::vector<std::uint32_t> place_of_motion;   // of each host, 1 + where that is, or 0
-  std::vector<ActingBetween<D>> between;        // bodies, by pair
-  std::vector<ActingOnBody> on_bodies;          // that do not deform, by body
-  std::vector<ActingOnHost<D>> on_hosts;        // by host; in the coming step
-  std::vector<std::uint32_t> place_on_hosts;    // scratch: of each host, 1 + where it is, or 0
-  double stored_push = 0.0, stored_rub = 0.0;   // in the springs after the last step [J]
+  double closing = 0.0;      // by how fast points near each other have moved since, at most [m/s]
+  double awake_until = 0.0;  // by so much, SurfacePart::awake serves [m]
+  std::vector<HostMotion<D>> motions;          // of hosts in touch
+  std::vector<std::uint32_t> moving;           // the numbers of these
+  std::vector<std::uint32_t> place_of_motion;  // of each host, 1 + where that is, or 0
+  std::vector<ActingBetween<D>> between;       // bodies, by pair
+  std::vector<ActingOnBody> on_bodies;         // that do not deform, by body
+  std::vector<ActingOnHost<D>> on_hosts;       // by host; in the coming step
+  std::vector<std::uint32_t> place_on_hosts;   // scratch: of each host, 1 + where it is, or 0
+  double stored_push = 0.0, stored_rub = 0.0;  // in the springs after the last step [J]
 
+  DeepestPoint<D> deepest;
   std::size_t touching = 0, touching_max = 0;  // points that are pushed, now and since the start
 
   bool exist() const { return !points.empty(); }

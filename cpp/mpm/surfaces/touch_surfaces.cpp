@@ -73,6 +73,7 @@ void give_to_hosts(Domain<D>& domain) {
   Acting<D> acting(surfaces);
   surfaces.stored_push = surfaces.stored_rub = 0.0;
   surfaces.touching = 0;
+  surfaces.deepest = {};
   for (const SurfacePart<D>& part : surfaces.parts) {
     surfaces.stored_push += part.stored_push;
     surfaces.stored_rub += part.stored_rub;
@@ -80,6 +81,8 @@ void give_to_hosts(Domain<D>& domain) {
       if (!(touch.pushed > 0.0)) continue;
       ++surfaces.touching;
       const Vec<double, D> place = surfaces.places[touch.point] + touch.arm;
+      if (!is_face(touch.opposite) && touch.overlap > surfaces.deepest.overlap)
+        surfaces.deepest = {part.body, touch.overlap, place};
       const bool rubbed = rubs(touch);
       acting.push(touch.point, touch.push);
       if (rubbed) acting.rub(touch.point, touch.rub, touch.reach, place);

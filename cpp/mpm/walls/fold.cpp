@@ -2,6 +2,7 @@
 // particles have given, before the exchange adds the images up: folding is linear, so the two may
 // come in this order.
 #include "mpm/step/fixed_walls.hpp"
+#include "mpm/step/kept_nodes.hpp"
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stage_functions.hpp"
 #include "mpm/walls/reactions.hpp"
@@ -9,13 +10,16 @@
 namespace mpm {
 namespace {
 
-/// Of the vector at number `at` of the records.
+/// Of the vector at number `at` of the records; with those of nodes in bodies, which map forces
+/// alone.
 template <int D>
-void fold(Domain<D>& domain, int at) {
+void fold(Domain<D>& domain, int at, bool with_kept = false) {
   auto& grid = domain.grid;
   if (!grid.has_ghosts()) return;
-  for_each_patch(domain,
-                 [&](std::size_t p) { fold_at_walls(grid, grid.patches[p], grid.block(p), at); });
+  for_each_patch(domain, [&](std::size_t p) {
+    if (with_kept || !grid.patches[p].keeps)
+      fold_at_walls(grid, grid.patches[p], grid.block(p), at);
+  });
 }
 
 /// What folding does to the vector at number `at` of the records, times factor(patch, node), into
@@ -46,9 +50,9 @@ void fold_momentum(Domain<D>& domain) {
 
 template <int D>
 void fold_forces(Domain<D>& domain) {
-  add_reactions(domain, deformable | free_rigid, force_at, &AngularImpulses::walls,
-                [&](const Patch<D>&, int) { return domain.time_step; });
-  fold(domain, force_at);
+  add_reactions(domain, deformable | free_rigid | in_body, force_at, &AngularImpulses::walls,
+                [&](const Patch<D>& patch, int) { return time_of_forces(domain, patch); });
+  fold(domain, force_at, true);
   if (!domain.grid.has_ghosts()) return;
   for_each_flowing_patch(domain, [&](const Patch<D>& patch, const NodeBlock<D>& block) {
     fold_volumes(domain.grid, patch, block);

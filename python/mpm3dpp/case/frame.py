@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from .case import Case
 
 
+HOLDING = {"slip", "fixed"}
+"""Walls of which bodies on nodes of their own have images, if they start there."""
+
+
 def in_body(case: Case) -> list[str]:
     """Return the bodies and entries of grains whose nodes lie in them."""
     return [name for name, part in case.parts().items() if part.frame == MATERIAL]
@@ -31,9 +35,15 @@ def check_frames(case: Case) -> Iterator[PydanticCustomError]:
         The violations, with their paths in the case.
     """
     own = in_body(case)
-    if not own and (word := _restitution(case)):
+    damped = case.run.short_wave_damping > 0.0
+    path = _restitution(case) or (("run", "short_wave_damping") if damped else ())
+    if path and not own:
         rule = f'is for bodies with frame = "{MATERIAL}", and there is none'
-        yield violation(rule, "give it to bodies, or leave restitution out", path=word)
+        yield violation(rule, f"give it to bodies, or leave {path[-1]} out", path=path)
+    if own and damped and case.grid.basis == "gimp":
+        rule = 'does not go with grid.basis = "gimp", which has no affine part of a velocity'
+        remedy = 'give grid.basis = "quadratic_bspline", or leave it out'
+        yield violation(rule, remedy, path=("run", "short_wave_damping"))
     for name in own:
         for rule, remedy in (*_of_body(case, name), *_of_case(case, name)):
             path = (*case.part_path(name), "frame")
@@ -100,9 +110,15 @@ def _of_case(case: Case, name: str) -> Iterator[tuple[str, str]]:
         yield "does not go with bonded bodies yet", updated
     if case.contact_enabled:
         yield from ((rule, f"leave it out, or {updated}") for rule in _of_contact(case))
-    if any(wall not in ("free", CONTACT) for wall in case.grid.walls):
-        rule = f'goes with walls of grid.box that are "{CONTACT}" alone, so far'
-        yield rule, f'give walls "{CONTACT}", or {updated}'
+    if "absorbing" in case.grid.walls:
+        yield "does not go with walls of grid.box that absorb yet", f"leave them out, or {updated}"
+    if HOLDING & set(case.grid.walls):
+        rule = "does not go with walls of grid.box that are slip or fixed"
+        if case.contact_enabled:
+            remedy = f'give walls "{CONTACT}", contact.enabled = false, or {updated[5:]}'
+            yield f"{rule} where bodies touch each other, yet", remedy
+        if _restitution(case):
+            yield f"{rule} and a restitution, yet", f"leave one of them out, or {updated}"
     if case.grid.outflow_box is not None:
         yield "does not go with grid.outflow_box", f"leave it out, or {updated}"
     if case.grid.coarsening is not None:

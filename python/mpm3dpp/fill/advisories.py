@@ -31,7 +31,7 @@ from .shape_notes import shape_notes
 from .size_notes import size_notes
 from .stretch_notes import stretch_notes
 from .unit_notes import unit_notes
-from .wall_notes import wall_notes
+from .wall_notes import off_walls, wall_notes
 
 _INCOMPRESSIBLE = 0.45
 _STIFFEST = 0.499
@@ -55,6 +55,7 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *bond_notes(case),
         *_detonations(case, bodies, world),
         *wall_notes(case),
+        *off_walls(case, bodies),
         *gas_notes(case),
         *response_notes(case),
         *explosive_notes(case),

@@ -27,6 +27,7 @@ from .placement import box_mistakes, overlap_mistakes
 from .settling import settling_mistakes
 from .slices import number_of_all, survey_of_slices
 from .velocities import start_velocities
+from .wall_notes import wall_mistakes
 
 MASS_WARNING = 0.05  # Relative mass error above which a run warns ...
 MASS_ERROR = 0.5  # ... and above which it does not start.
@@ -58,6 +59,7 @@ def build(case: Case, world: World | None = None) -> Filled:
     filled = fill_all(case, world)
     mistakes = [one for part in filled.parts.values() for one in box_mistakes(case, part, world)]
     mistakes += overlap_mistakes(case, filled, world)
+    mistakes += wall_mistakes(case, filled)
     filled.interferences = interferences(case)
     mistakes += settling_mistakes(case, filled)
     if not mistakes:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mpm3dpp.base.frames import MATERIAL
+from mpm3dpp.case.frame import HOLDING
 from mpm3dpp.case.grid import CONTACT
 from mpm3dpp.case.load_pieces import nearest_particles
 from mpm3dpp.shapes.contact_points import (
@@ -26,19 +27,22 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-FINER = {2: 4.0, 3: 2.0}
-"""Contact points along the edge of a particle, in 2D and 3D: rows have bumps that stop a roll."""
+DEPTHS = 2.0
+"""Depths e of contact points along the edge of a particle: they lie e / 2 behind the surface."""
+ALONG = {2: 2.0, 3: 1.0}
+"""Contact points along e, in 2D and 3D: rows have bumps that stop a roll."""
 
 
 def point_spacing(case: Case, parts: Iterable[FilledPart]) -> float | None:
-    """Return the distance of the contact points of all bodies [m]; None where nothing meets.
+    """Return the depth e of the contact points of all bodies [m]; None where nothing meets.
 
-    That of the particles of the finest body, over `FINER`.
+    That of the finest body.
     """
     own = [part.spacing for part in parts if case.parts()[part.name].frame == MATERIAL]
-    if not own or not (case.contact_enabled or CONTACT in case.grid.walls):
+    touches = case.contact.enabled and not case.contact.bonded  # A body alone may touch itself.
+    if not own or not (touches or CONTACT in case.grid.walls):
         return None
-    return min(own) / FINER[case.grid.dimension]
+    return min(own) / DEPTHS
 
 
 def add_surfaces(
@@ -52,7 +56,7 @@ def add_surfaces(
         part: the entry.
         number: of its first body in the core.
         particles: of all its bodies.
-        spacing: of the points [m].
+        spacing: e of the points [m].
 
     Raises:
         CaseError: a part of the surface has no particle near it.
@@ -66,15 +70,18 @@ def add_surfaces(
         if part.balls is None:
             points = _points(case, part, positions, spacing)
         else:
-            points = points_of_ball(part.balls[0][k], float(part.balls[1][k]), spacing)
+            along = spacing / ALONG[case.grid.dimension]
+            centre, radius = part.balls[0][k], float(part.balls[1][k])
+            points = points_of_ball(centre, radius, along, 0.5 * spacing)
         core.add_surface(number + k, *_carried(case, part, positions, points), spacing)
 
 
 def _points(case: Case, part: FilledPart, positions: Array, spacing: float) -> ContactPoints:
     shape = case.body[part.name].shape
+    along, depth = spacing / ALONG[case.grid.dimension], 0.5 * spacing
     if shape is not None:
-        return points_of_shape(shape, spacing)
-    return points_of_particles(positions, part.spacing, spacing)
+        return points_of_shape(shape, along, depth, _held_planes(case))
+    return points_of_particles(positions, part.spacing, along, depth)
 
 
 def _carried(
@@ -91,3 +98,13 @@ def _carried(
     offsets = points.places[which] - positions[owner]
     areas = points.areas[which] / shared[which]
     return owner.tolist(), np.ascontiguousarray(offsets), areas
+
+
+def _held_planes(case: Case) -> list[tuple[int, float]]:
+    """Return axis and place [m] of the slip and fixed walls, behind which bodies go on."""
+    grid = case.grid
+    if grid.box is None:
+        return []
+    corners = grid.box.lower, grid.box.upper
+    faces = [divmod(face, 2) for face, wall in enumerate(grid.walls) if wall in HOLDING]
+    return [(axis, corners[at_end][axis]) for axis, at_end in faces]

@@ -81,7 +81,7 @@ class WarningRecord:
 
     Attributes:
         kind: "time step", "energy of a step", "load", "outside walls", "volume", "left box",
-            "crowded node".
+            "crowded node", "deep surface", ...
         body, particle: whom it first was about; the particle in the order of filling.
         step, time, position: when [s] and where [m] that was.
         share: of the particles of the body, or of all grains of its entry, the largest at a look;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Contact points of a body: points of its drawn surface, evenly spread, half a spacing inside it.
+"""Contact points of a body: points of its drawn surface, evenly spread, a depth inside it.
 
 They lie on the shape and not on its filling: a ball filled by a lattice is round. Where two faces
 meet each of them has the point at the edge, of which one stays.
@@ -8,6 +8,7 @@ meet each of them has the point at the edge, of which one stays.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -36,35 +37,47 @@ class ContactPoints(NamedTuple):
     areas: Array
 
 
-def points_of_shape(shape: Shape, spacing: float) -> ContactPoints:
+def points_of_shape(
+    shape: Shape, spacing: float, depth: float, planes: Sequence[tuple[int, float]] = ()
+) -> ContactPoints:
     """Return the contact points of a shape.
 
     Args:
         shape: any.
         spacing: about the distance of the points [m].
+        depth: how far they lie behind the surface [m].
+        planes: axis and place [m] of those on which the surface is none: a body goes on there.
     """
-    return _inside(surface(shape, "all", spacing), spacing)
+    drawn = surface(shape, "all", spacing)
+    for axis, place in planes:
+        own = abs(drawn.points[:, axis] - place) > 1e-3 * spacing
+        drawn = Surface(drawn.points[own], drawn.areas[own])
+    return _inside(drawn, spacing, depth)
 
 
-def points_of_ball(centre: Array, radius: float, spacing: float) -> ContactPoints:
+def points_of_ball(centre: Array, radius: float, spacing: float, depth: float) -> ContactPoints:
     """Return those of a disc or a ball.
 
     Args:
         centre: [m], shape (D,).
         radius: [m].
         spacing: about the distance of the points [m].
+        depth: how far they lie behind the surface [m].
     """
     drawn = (circle if len(centre) == 2 else sphere)(radius, spacing)
-    return _inside(Surface(drawn.points + centre, drawn.areas), spacing)
+    return _inside(Surface(drawn.points + centre, drawn.areas), spacing, depth)
 
 
-def points_of_particles(positions: Array, edge: float, spacing: float) -> ContactPoints:
+def points_of_particles(
+    positions: Array, edge: float, spacing: float, depth: float
+) -> ContactPoints:
     """Return those of a body that is known by its particles alone.
 
     Args:
         positions: of its particles [m], shape (n, D).
         edge: of the particles' cubes [m].
         spacing: about the distance of the points [m].
+        depth: how far they lie behind the surface [m].
     """
     drawn = faces(positions, edge, "all")
     each = max(1, math.ceil(edge / spacing - 1e-6))
@@ -85,16 +98,16 @@ def points_of_particles(positions: Array, edge: float, spacing: float) -> Contac
                     moved[own, d] += by * edge
             points.append(moved)
             areas.append(drawn.areas / each ** (dimension - 1))
-    return _inside(Surface(np.concatenate(points), np.concatenate(areas)), spacing)
+    return _inside(Surface(np.concatenate(points), np.concatenate(areas)), spacing, depth)
 
 
-def _inside(drawn: Surface, spacing: float) -> ContactPoints:
-    """Return points half a spacing behind a surface, one where faces share it."""
+def _inside(drawn: Surface, spacing: float, depth: float) -> ContactPoints:
+    """Return points behind a surface, one where faces share it."""
     from scipy.spatial import cKDTree
 
     areas = np.linalg.norm(drawn.areas, axis=1)
     normals = drawn.areas / areas[:, None]
-    places = drawn.points - 0.5 * spacing * normals
+    places = drawn.points - depth * normals
     pairs = cKDTree(places).query_pairs(_SAME_POINT * spacing, output_type="ndarray")
     kept = np.ones(len(places), dtype=bool)
     apart = np.einsum("ij,ij->i", normals[pairs[:, 0]], normals[pairs[:, 1]]) < _ONE_FACE
