@@ -26,13 +26,18 @@ def ball(place: list[float], velocity: list[float], **more: Any) -> dict[str, An
     }
 
 
-def case(bodies: dict[str, Any], end: float, box: dict[str, Any] | None = None) -> Case:
-    grid: dict[str, Any] = {"dimension": 3, "cell_size": CELL}
-    if box is not None:
-        grid["box"] = box
+def case(
+    bodies: dict[str, Any], end: float, box: Any = None, damping: float = 0.0, **run: Any
+) -> Case:
     matter = {"density": DENSITY, "strength": {"elastic": {"E": E, "nu": NU}}}
-    tables = {"grid": grid, "run": {"end_time": end}, "material": {"m": matter}, "body": bodies}
-    return Case.model_validate(tables)
+    return Case.model_validate(
+        {
+            "grid": {"dimension": 3, "cell_size": CELL} | ({"box": box} if box else {}),
+            "run": {"end_time": end, **run},
+            "material": {"m": matter | ({"damping": {"stiffness": damping}} if damping else {})},
+            "body": bodies,
+        }
+    )
 
 
 def parts(simulation: Simulation, name: str) -> np.ndarray:
@@ -109,3 +114,32 @@ def test_a_spinning_ball_is_dropped() -> None:
     lost = spin - parts(simulation, "spin_z")[0]
     assert abs(lost / (2.5 * given / RADIUS) - 1.0) < 0.04
     assert 0.98 < up / fall < 1.0
+
+
+def test_a_ball_that_turns_about_its_normal_is_slowed_down() -> None:
+    """Pressed on a floor by a circle of a quarter of its radius, 1.5 cells: 3 pi mu N a / 16."""
+    mu, circle, spin = 0.3, 0.25 * RADIUS, 30.0
+    c = np.sqrt(E * (1 - NU) / ((1 + NU) * (1 - 2 * NU)) / DENSITY)
+    load = 4 * E / (1 - NU**2) * circle**3 / (3 * RADIUS)
+    g = load / (DENSITY * 4 / 3 * np.pi * RADIUS**3)
+    ramp = 60 * RADIUS / c
+    far = 3 * RADIUS
+    corners = {"lower": [-far, 0, -far], "upper": [far, 2 * far, far]}
+    box = {**corners, "walls": {"y_min": "contact"}, "friction": {"y_min": mu}}
+    body = ball([0, RADIUS, 0], [0, 0, 0], angular_velocity=[0, spin, 0])
+    gravity = [0, {"times": [0, ramp, 1e3], "values": [0, -g, -g]}, 0]
+    of = case({"a": body}, 2 * ramp, box, damping=0.3 * CELL / c, gravity=gravity)
+    simulation = Simulation(of)
+    rows = []
+    while simulation.time < 2 * ramp:
+        simulation.advance(20, 2 * ramp)
+        rows.append(
+            [
+                simulation.time,
+                *(parts(simulation, f"{of}_y")[0] for of in ("spin", "angular_momentum")),
+            ]
+        )
+    times, spins, momenta = np.array(rows).T
+    slides = (times > 1.1 * ramp) & (spins > 0.15 * spin)
+    torque = -np.polyfit(times[slides], momenta[slides], 1)[0]
+    assert abs(torque / (3 * np.pi * mu * load * circle / 16) - 1.0) < 0.05
