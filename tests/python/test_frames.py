@@ -13,6 +13,7 @@ from mpm3dpp import Case, CaseError, Simulation
 from mpm3dpp.fill.advisories import notes
 from mpm3dpp.fill.build import build
 from mpm3dpp.run.summary import echo
+from mpm3dpp.shapes.contact_points import points_of_shape
 
 CASE = """
 [grid]
@@ -239,3 +240,28 @@ def test_check_says_whose_nodes_lie_in_it() -> None:
     about = {line.split(":")[0]: line for line in echo(case, build(case)).splitlines()}
     assert about["body a"].endswith(", on nodes of its own")
     assert "nodes" not in about["body b"]
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_contact_points_lie_behind_all_faces(dimension: int) -> None:
+    """At an edge one point stands for both faces, as deep behind each: both have all their area."""
+    side, spacing, depth = 4.0, 0.25 if dimension == 3 else 0.125, 0.125
+    tables = {"box": {"lower": [0.0] * dimension, "upper": [side] * dimension}}
+    grid = {"dimension": dimension, "cell_size": 1.0}
+    matter = {"density": 1.0, "strength": {"elastic": {"E": 1.0, "nu": 0.3}}}
+    case = Case.model_validate(
+        {
+            "grid": grid,
+            "run": {"end_time": 1.0},
+            "material": {"m": matter},
+            "body": {"b": {"material": "m", "shape": tables}},
+        }
+    )
+    shape = case.body["b"].shape
+    assert shape is not None
+    points = points_of_shape(shape, spacing, depth)
+    behind = np.minimum(points.places, side - points.places)
+    assert behind.min() == pytest.approx(depth)
+    assert behind.min(axis=1).max() == pytest.approx(depth)
+    face = abs(points.places[:, 0] - depth) < 1e-9
+    assert points.areas[face].sum() == pytest.approx(side ** (dimension - 1))

@@ -22,7 +22,8 @@ double least_moment(const Matrix3& inertia) {
   return std::min({principal.value[0], principal.value[1], principal.value[2]});
 }
 
-/// Do walls hold nodes of a body? It turns about these then.
+/// Do walls hold nodes of a body? What turns then are mirrored bodies, of which it is a part: such
+/// a one keeps the inertia of its nodes, also about the normal of a slip wall.
 template <int D>
 bool is_held(const Domain<D>& domain, int body) {
   return std::ranges::any_of(patches_of<D>(domain.grid.patches, body), [&](const Patch<D>& patch) {

@@ -85,15 +85,17 @@ bool is_finite(const Vec<double, D>& v) {
   return std::isfinite(dot(v, v));
 }
 
-/// How fast points close limits the step, and is known by the lists: they are made where they were.
+/// How fast near points have moved against each other limits the step, and is known by the lists:
+/// they are made where they were.
 template <int D>
 void exchange_lists(Domain<D>& domain, StateStream& stream) {
   Surfaces<D>& surfaces = domain.surfaces;
   if (stream.restores()) surfaces.places_of_lists.resize(surfaces.points.size());
   stream.array(std::span(surfaces.places_of_lists));
-  stream(surfaces.time_of_lists, surfaces.closing);
+  stream(surfaces.age_of_lists, surfaces.closing);
   if (!stream.restores()) return;
   StateStream::check(std::ranges::all_of(surfaces.places_of_lists, is_finite<D>) &&
+                         std::isfinite(surfaces.age_of_lists) && surfaces.closing >= 0.0 &&
                          std::isfinite(surfaces.closing),
                      damaged);
   std::swap(surfaces.places, surfaces.places_of_lists);

@@ -12,7 +12,7 @@
 namespace mpm {
 namespace {
 
-// At the largest `cfl`, of the spacing of contact points in a step. A spring begins within a step
+// At the largest `cfl`, of the reach of springs in a step. A spring begins within a step
 // and is as strong as matter: at half of it hits of flat faces keep their energy to .5 %.
 constexpr double most_closing = 0.5;
 
@@ -69,9 +69,6 @@ double stable_time_step(const Domain<D>& domain, double cfl) {
   fastest = all_max(*domain.grid.partition.comm, fastest);
   const double way = cfl * domain.grid.cell_size;
   double time_step = way / fastest;
-  // Surfaces must not pass each other's points.
-  if (const Surfaces<D>& surfaces = domain.surfaces; surfaces.closing > 0.0)
-    time_step = std::min(time_step, cfl * most_closing * surfaces.spacing / surfaces.closing);
   // Prescribed motions may have jumps.
   for (const std::size_t b : domain.prescribed) {
     const PrescribedMotion& motion = *domain.bodies[b].motion;
@@ -116,6 +113,10 @@ std::string choose_time_step(Simulation<D>& simulation) {
     return text.str();
   }
   simulation.next_time_step = stable_time_step(simulation.domain, run.cfl);
+  // Surfaces must not pass each other's points.
+  if (const Surfaces<D>& surfaces = simulation.domain.surfaces; surfaces.closing > 0.0)
+    simulation.next_time_step = std::min(
+        simulation.next_time_step, run.cfl * most_closing * surfaces.spacing / surfaces.closing);
   if (run.largest_time_step)
     simulation.next_time_step = std::min(simulation.next_time_step, *run.largest_time_step);
   return {};

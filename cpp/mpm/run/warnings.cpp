@@ -40,17 +40,16 @@ std::string too_sparse(const std::string& whose, double per_cent) {
   return text.str();
 }
 
-/// Of a surface; `share`: of the depth of contact points.
+/// Of a surface; `share`: of the reach of the springs.
 std::string deep_in_another(const std::string& whose, double share) {
   std::ostringstream text;
   text.precision(4);
   text
-      << "the surface of " << whose << " lies " << share
-      << " of the depth of contact points deep in another, and springs hold what is less than one: "
-         "bodies that meet at more than a fifth of the speed of waves, or are pressed by a fifth "
-         "of "
-         "their stiffness, go through each other; give frame = \"updated\", or fewer "
-         "particles_per_cell, by which points lie deeper";
+      << "the surface of " << whose << " is " << share
+      << " of the reach of its springs deep in a surface: beyond 1 they no longer hold, and bodies "
+         "pass through each other, as they do where they meet at more than about a fifth of the "
+         "speed of waves; give frame = \"updated\", or fewer particles_per_cell, by which springs "
+         "reach farther";
   return text.str();
 }
 

@@ -16,6 +16,7 @@ void note(Simulation<D>& simulation, Note found) {
     if (known.kind == found.kind && known.group == found.group && known.face == found.face) {
       ++known.count;
       known.share = std::max(known.share, found.share);
+      if (found.kind == NoteKind::deep) known.value = std::max(known.value, found.value);
       return;
     }
   notes.push_back(found);

@@ -38,8 +38,7 @@ double moved_since(Domain<D>& domain) {
 template <int D>
 double closing_speed(Domain<D>& domain) {
   const Surfaces<D>& surfaces = domain.surfaces;
-  const double time = domain.time_after - surfaces.time_of_lists;
-  if (!(time > 0.0)) return surfaces.closing;
+  if (!(surfaces.age_of_lists > 0.0)) return surfaces.closing;
   const auto way = [&](std::uint32_t c) {
     return surfaces.places[c] - surfaces.places_of_lists[c];
   };
@@ -51,7 +50,7 @@ double closing_speed(Domain<D>& domain) {
       farthest[k] = std::max(farthest[k], dot(apart, apart));
     }
   });
-  return std::sqrt(*std::ranges::max_element(farthest)) / time;
+  return std::sqrt(*std::ranges::max_element(farthest)) / surfaces.age_of_lists;
 }
 
 /// The boxes that points of one may feel: of other bodies, one after another, and of their own if
@@ -100,16 +99,16 @@ template <int D>
 void find_near(const Domain<D>& domain, const PointBoxes<D>& boxes, const FoldedBodies<D>& folded,
                SurfacePart<D>& part) {
   const Surfaces<D>& surfaces = domain.surfaces;
-  const double square = std::pow(reach_of_lists(surfaces), 2);
+  const double reach = reach_of_lists(surfaces), square = reach * reach;
   const bool folds = folded.is_folded(part.body);
-  BoxesAround<D> around(boxes, reach_of_lists(surfaces));
+  BoxesAround<D> around(boxes, reach);
   part.near.clear();
   part.near_of.clear();
   for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
     const Vec<double, D> here = surfaces.places[c];
     NearPoints near{c, -1, 0, 0, 0.0};
     double nearest = 0.0;
-    const auto end = [&] {
+    const auto close_list = [&] {
       near.count = static_cast<std::uint32_t>(part.near.size()) - near.first;
       // Until both have moved by half of what lies between.
       near.sleeps_until = 0.5 * (std::sqrt(nearest) - SurfacePoint<D>::farthest * surfaces.spacing);
@@ -119,7 +118,7 @@ void find_near(const Domain<D>& domain, const PointBoxes<D>& boxes, const Folded
       if (part.as_one && folded.as_one(box->body)) continue;
       if (!(box->square_to(here, here) < square)) continue;
       if (box->body != near.body) {
-        if (near.body >= 0) end();
+        if (near.body >= 0) close_list();
         near.body = box->body;
         near.first = static_cast<std::uint32_t>(part.near.size());
         nearest = std::numeric_limits<double>::infinity();
@@ -130,34 +129,30 @@ void find_near(const Domain<D>& domain, const PointBoxes<D>& boxes, const Folded
         nearest = std::min(nearest, apart);
       });
     }
-    if (near.body >= 0) end();
+    if (near.body >= 0) close_list();
   }
 }
 
-/// Of the lists of a part what may be felt before points have moved by half of `further` more.
+/// Of the lists of a part what may be felt until points have moved by `until` since these were
+/// made.
 template <int D>
-void find_awake(const Surfaces<D>& surfaces, double further, SurfacePart<D>& part) {
-  const double reach = SurfacePoint<D>::reach * surfaces.spacing + further,
-               least = SurfacePoint<D>::farthest * surfaces.spacing + further;
+void find_awake(const Surfaces<D>& surfaces, double until, SurfacePart<D>& part) {
+  const std::vector<Vec<double, D>>& places = surfaces.places_of_lists;
+  const double reach = SurfacePoint<D>::reach * surfaces.spacing + 2.0 * until;
   part.awake.clear();
   part.awake_of.clear();
-  for (const NearPoints& all : part.near_of) {
-    if (surfaces.moved + 0.5 * further < all.sleeps_until) continue;
-    const Vec<double, D> here = surfaces.places[all.point];
-    NearPoints near = all;
-    near.first = static_cast<std::uint32_t>(part.awake.size());
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::uint32_t k = all.first; k < all.first + all.count; ++k) {
-      const Vec<double, D> way = surfaces.places[part.near[k]] - here;
-      const double square = dot(way, way);
-      nearest = std::min(nearest, square);
-      if (square < reach * reach) part.awake.push_back(part.near[k]);
+  for (NearPoints near : part.near_of) {
+    if (until < near.sleeps_until) continue;
+    const std::uint32_t end = near.first + near.count;
+    const Vec<double, D> there = places[near.point];
+    const auto first = static_cast<std::uint32_t>(part.awake.size());
+    for (std::uint32_t k = near.first; k < end; ++k) {
+      const Vec<double, D> way = places[part.near[k]] - there;
+      if (dot(way, way) < reach * reach) part.awake.push_back(part.near[k]);
     }
-    near.count = static_cast<std::uint32_t>(part.awake.size()) - near.first;
-    if (nearest < least * least)
-      part.awake_of.push_back(near);
-    else
-      part.awake.resize(near.first);
+    near.first = first;
+    near.count = static_cast<std::uint32_t>(part.awake.size()) - first;
+    part.awake_of.push_back(near);
   }
 }
 
@@ -184,20 +179,20 @@ void find_near_points(Domain<D>& domain) {
   const double e = surfaces.spacing;
   const bool known = surfaces.places_of_lists.size() == surfaces.places.size();
   if (known) surfaces.moved = moved_since(domain);
+  surfaces.age_of_lists += domain.time_step;
   const bool anew = !known || !(surfaces.moved < 0.5 * margin * e);
   if (known && (anew || domain.step % steps_between_speeds == 0))
     surfaces.closing = closing_speed(domain);
   if (anew) {
     make_near_lists(domain);
     surfaces.places_of_lists = surfaces.places;
-    surfaces.time_of_lists = domain.time_after;
-    surfaces.moved = 0.0;
+    surfaces.age_of_lists = surfaces.moved = 0.0;
   }
   if (surfaces.moved < surfaces.awake_until) return;
-  domain.threads.for_each(surfaces.parts.size(), [&](std::size_t k) {
-    find_awake(surfaces, margin_of_awake * e, surfaces.parts[k]);
-  });
   surfaces.awake_until = surfaces.moved + 0.5 * margin_of_awake * e;
+  domain.threads.for_each(surfaces.parts.size(), [&](std::size_t k) {
+    find_awake(surfaces, surfaces.awake_until, surfaces.parts[k]);
+  });
 }
 
 template void make_near_lists<2>(Domain<2>&);

@@ -1,9 +1,11 @@
 #pragma once
 // Contact points by the boxes of space that they are in, found by a hash.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "mpm/fields/lanes.hpp"
@@ -99,9 +101,13 @@ class PointBoxes {
  private:
   BoxIndex index_of(const Vec<double, D>& place) const {
     BoxIndex index{};
-    for (int a = 0; a < D; ++a)
+    for (int a = 0; a < D; ++a) {
+      // What is no number is found far off, by who looks at the state of the run.
+      constexpr double far = 1 << 30;
+      const double at = std::floor((place[a] - origin_[a]) / edge_);
       index[static_cast<std::size_t>(a)] =
-          static_cast<std::int32_t>(std::floor((place[a] - origin_[a]) / edge_));
+          static_cast<std::int32_t>(at < far ? std::max(at, -far) : far);
+    }
     return index;
   }
   /// Where in the table an index is, or would be.

@@ -219,7 +219,7 @@ struct Surfaces {
   std::vector<KeptOfContact<double>> set_back;  // by how much they overlapped at the start [m]
 
   std::vector<Vec<double, D>> places_of_lists;  // where points were when NearPoints were found
-  double time_of_lists = 0.0;                   // and when that was [s]
+  double age_of_lists = 0.0;                    // for how long it is [s]
   double moved = 0.0;                           // by the farthest of them since [m]
   double closing = 0.0;      // by how fast points near each other have moved since, at most [m/s]
   double awake_until = 0.0;  // by so much, SurfacePart::awake serves [m]

@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-DEPTHS = 2.0
-"""Depths e of contact points along the edge of a particle: they lie e / 2 behind the surface."""
+REACHES = 2.0
+"""Reaches e of springs along the edge of a particle; contact points lie e / 2 behind surfaces."""
 ALONG = {2: 2.0, 3: 1.0}
 """Contact points along e, in 2D and 3D: rows have bumps that stop a roll."""
 
 
 def point_spacing(case: Case, parts: Iterable[FilledPart]) -> float | None:
-    """Return the depth e of the contact points of all bodies [m]; None where nothing meets.
+    """Return the reach e of the springs of all bodies [m]; None where nothing meets.
 
     That of the finest body.
     """
@@ -42,7 +42,7 @@ def point_spacing(case: Case, parts: Iterable[FilledPart]) -> float | None:
     touches = case.contact.enabled and not case.contact.bonded  # A body alone may touch itself.
     if not own or not (touches or CONTACT in case.grid.walls):
         return None
-    return min(own) / DEPTHS
+    return min(own) / REACHES
 
 
 def add_surfaces(

@@ -61,7 +61,7 @@ def wall_notes(case: Case) -> list[str]:
 def _off_walls(case: Case, bodies: Filled) -> Iterator[tuple[str, str, str, float]]:
     """Yield entries on nodes of their own that begin off a wall that would hold them there.
 
-    Of each the first body, the wall's key, and how far off it is [m].
+    Of each the body that is nearest, the wall's key, and how far off it is [m].
     """
     if case.grid.box is None:
         return
@@ -72,7 +72,8 @@ def _off_walls(case: Case, bodies: Filled) -> Iterator[tuple[str, str, str, floa
             part = bodies.parts[name]
             seen = part.survey.upper if at_end else part.survey.lower
             off = np.abs(seen[:, d] - corners[at_end][d])
-            for k in np.flatnonzero(off > _ON_WALL * part.spacing)[:1]:
+            off = np.where(off > _ON_WALL * part.spacing, off, np.inf)
+            if np.isfinite(off[k := int(off.argmin())]):
                 yield name, part.names[k], f"grid.box.walls.{FACES[face]}", float(off[k])
 
 

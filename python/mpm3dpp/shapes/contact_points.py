@@ -21,7 +21,7 @@ from .surfaces import surface
 
 Array = NDArray[np.float64]
 
-_SAME_POINT = 0.6  # Spacings: two points of different faces that are nearer are one.
+_SAME_POINT = 0.4  # Spacings: two points of different faces that are nearer are one.
 _ONE_FACE = 0.9  # Cosine of the angle up to which two normals are those of one face.
 
 
@@ -108,6 +108,7 @@ def _inside(drawn: Surface, spacing: float, depth: float) -> ContactPoints:
     areas = np.linalg.norm(drawn.areas, axis=1)
     normals = drawn.areas / areas[:, None]
     places = drawn.points - depth * normals
+    places = _behind_all_faces(places, drawn.points, normals, depth)
     pairs = cKDTree(places).query_pairs(_SAME_POINT * spacing, output_type="ndarray")
     kept = np.ones(len(places), dtype=bool)
     apart = np.einsum("ij,ij->i", normals[pairs[:, 0]], normals[pairs[:, 1]]) < _ONE_FACE
@@ -115,3 +116,26 @@ def _inside(drawn: Surface, spacing: float, depth: float) -> ContactPoints:
         if kept[first]:
             kept[second] = False
     return ContactPoints(places[kept], areas[kept])
+
+
+def _behind_all_faces(places: Array, drawn: Array, normals: Array, depth: float) -> Array:
+    """Return points as deep behind the face beside an edge as behind their own.
+
+    Args:
+        places: behind their own faces [m], shape (n, D).
+        drawn: the points of the surface that they are behind [m], shape (n, D).
+        normals: unit vectors out of the body there, shape (n, D).
+        depth: [m].
+    """
+    from scipy.spatial import cKDTree
+
+    own, others = cKDTree(drawn).query_pairs(1.5 * depth, output_type="ndarray").T
+    own, others = np.concatenate([own, others]), np.concatenate([others, own])
+    aside = np.einsum("ij,ij->i", normals[own], normals[others]) < _ONE_FACE
+    own, others = own[aside], others[aside]
+    lie = np.einsum("ij,ij->i", drawn[others] - places[own], normals[others])
+    shallow = (lie > 0.0) & (lie < (1.0 - 1e-9) * depth)
+    moved = places.copy()
+    # Of each point and face beside it the points of this one give the same plane: the last stands.
+    moved[own[shallow]] -= (depth - lie[shallow])[:, None] * normals[others[shallow]]
+    return moved
