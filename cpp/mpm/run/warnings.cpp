@@ -40,6 +40,20 @@ std::string too_sparse(const std::string& whose, double per_cent) {
   return text.str();
 }
 
+/// Of a gas whose particles have become too small or too large.
+std::string no_room(const std::string& whose, double per_cent, double volume) {
+  std::ostringstream text;
+  text.precision(4);
+  text
+      << per_cent << " % of the particles of " << whose
+      << " have less than 0.001 of their initial volume or stand for more than 100 cells, this one "
+         "has "
+      << volume
+      << " of that at the start: the grid has no room for it; give run.transfer = \"aflip\" on the "
+         "default basis, or smaller steps";
+  return text.str();
+}
+
 /// Of a surface; `share`: of the reach of the springs.
 std::string deep_in_another(const std::string& whose, double share) {
   std::ostringstream text;
@@ -84,13 +98,7 @@ std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded
            << n.value << "; " << (n.value < 1.0 ? crushed : torn);
       break;
     case NoteKind::gas_volume:
-      text
-          << per_cent << " % of the particles of " << whose
-          << " have less than 0.001 of their initial volume or stand for more than 100 cells, this "
-             "one has "
-          << n.value
-          << " of that at the start: the grid has no room for it; give run.transfer = \"aflip\" on "
-             "the default basis, or smaller steps";
+      text << no_room(whose, per_cent, n.value);
       break;
     case NoteKind::sparse:
       text << parted(whose, per_cent);
