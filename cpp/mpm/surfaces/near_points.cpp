@@ -10,7 +10,7 @@ namespace {
 // Lists hold what is nearer than a point is felt by this more, so that they last until points have
 // moved by half of it. From them those that are read in each step are taken, with a margin of their
 // own.
-constexpr double margin = 1.5, margin_of_awake = 0.6;  // spacings
+constexpr double margin = 1.2, margin_of_awake = 0.3;  // spacings
 constexpr std::int64_t steps_between_speeds = 10;      // at most
 
 template <int D>
