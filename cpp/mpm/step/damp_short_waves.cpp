@@ -131,20 +131,21 @@ template <int D>
 void damp_short_waves(Domain<D>& domain) {
   TileGrid<D>& grid = domain.grid;
   if ((domain.step + 1) % steps_between != 0 || !(second_moment(grid.basis) > 0.0)) return;
-  const auto lose_kinetic = [&](double sign) {
+  // Before and, with the other sign, after: what is lost.
+  const auto count_kinetic = [&](double sign) {
     for_each_patch(domain, in_body, [&](std::size_t p) {
       domain.sums[p].transferred += sign * kinetic_of_kept(grid, grid.patches[p]);
     });
   };
   // Where a body is bent Q* Q takes some of its turning; what is kept of that gives it back.
-  const auto lose_turning = [&](double sign) {
+  const auto leave_out_turning = [&](double sign) {
     domain.threads.for_each(domain.kept_spins.size(), [&](std::size_t k) {
       KeptSpin& turning = domain.kept_spins[k];
       turning.of_nodes -= sign * angular_momentum_of_kept(grid, turning);
     });
   };
-  lose_kinetic(1.0);
-  lose_turning(1.0);
+  count_kinetic(1.0);
+  leave_out_turning(1.0);
   map_what_is_seen<velocity_at>(domain);
   for_each_patch(domain, in_body, [&](std::size_t p) {
     take_unseen(domain, domain.body_of(grid.patches[p]), grid.block(p));
@@ -155,8 +156,8 @@ void damp_short_waves(Domain<D>& domain) {
     give_seen(grid.block(p));
     hold_kept_nodes(grid, grid.patches[p], grid.block(p));
   });
-  lose_kinetic(-1.0);
-  lose_turning(-1.0);
+  count_kinetic(-1.0);
+  leave_out_turning(-1.0);
 }
 
 template void damp_short_waves<2>(Domain<2>&);
