@@ -231,3 +231,30 @@ def everything(tmp_path: Path, dimension: int, scheme: str, basis: str, left: st
     file = tmp_path / "case.toml"
     file.write_text(text)
     return load_case(file)
+
+
+HUNG = """
+[grid]
+dimension = 2
+cell_size = "5 mm"
+[run]
+end_time = "0.4 s"
+gravity = [0, -10]
+[material.soft]
+density = 1000
+strength = { elastic = { E = "1 MPa", nu = 0.2 } }
+[contact]
+friction = 0.3
+[[contact.pair]]
+bodies = ["roof", "lamp"]
+bonded = true
+[body.roof]
+material = "soft"
+shape = { box = { lower = [-0.1, 0.0], upper = [0.1, 0.02] } }
+motion = "fixed"
+[body.lamp]
+material = "soft"
+shape = { box = { lower = [-0.02, -0.08], upper = [0.02, 0.0] } }
+damping = { mass = "30 1/s" }
+"""
+"""A body that hangs from a fixed one to which it is bonded."""

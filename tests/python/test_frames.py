@@ -55,7 +55,7 @@ def test_a_case_without_them_is_one() -> None:
         (GRID, f"{GRID}outflow_box = {{ {BOX} }}\n", "grid.outflow_box"),
         (GRID, f"{GRID}coarsening = {{ tiles = 9, times = 1 }}\n", "grid.coarsening"),
         ("enabled = false", "", "contact with b, which has another, yet"),
-        ("enabled = false", "bonded = true", "bonded bodies yet"),
+        ("enabled = false", "bonded = true", "contact with b, which has another, yet"),
         (RUN, f'{RUN}settle = {{ longest = "1 ms" }}\n', "run.settle yet"),
         (MATTER, WATER, "material.m, which flows or breaks"),
         (
@@ -63,9 +63,7 @@ def test_a_case_without_them_is_one() -> None:
             MATTER + "failure = { hydrostatic_tension = { limit = 1e5 } }\n",
             "flows or breaks",
         ),
-        (MATTER, MATTER + "volume_averaging = true\n", "volume_averaging of its material"),
         (A, f'{A}motion = "fixed"\n', "a body that does not deform"),
-        ("[contact]", f"{LOAD}[contact]", "loads on its surface yet"),
     ],
 )
 def test_what_they_do_not_go_with(before: str, after: str, said: str) -> None:

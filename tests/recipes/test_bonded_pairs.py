@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cases import CELL, cut_block, each_numerics, in_free_fall, three_blocks
+from cases import CELL, HUNG, cut_block, each_numerics, in_free_fall, three_blocks
 from mpm3dpp import Case, CaseError, Contact, ContactPair, Simulation, run_case
 from worlds import World, largest_differences
 
@@ -53,32 +53,6 @@ def test_parts_move_like_the_whole(dimension: int, scheme: str, basis: str, resp
 @pytest.mark.parametrize("transfer", ["flip", "apic", {"aflip": 0.9}])
 def test_parts_move_like_the_whole_with_other_transfers(transfer: Any) -> None:
     check_alike(*parts_and_whole(2, "usf", "quadratic_bspline", "impulses", transfer=transfer))
-
-
-HUNG = """
-[grid]
-dimension = 2
-cell_size = "5 mm"
-[run]
-end_time = "0.4 s"
-gravity = [0, -10]
-[material.soft]
-density = 1000
-strength = { elastic = { E = "1 MPa", nu = 0.2 } }
-[contact]
-friction = 0.3
-[[contact.pair]]
-bodies = ["roof", "lamp"]
-bonded = true
-[body.roof]
-material = "soft"
-shape = { box = { lower = [-0.1, 0.0], upper = [0.1, 0.02] } }
-motion = "fixed"
-[body.lamp]
-material = "soft"
-shape = { box = { lower = [-0.02, -0.08], upper = [0.02, 0.0] } }
-damping = { mass = "30 1/s" }
-"""
 
 
 @pytest.mark.parametrize("response", RESPONSES)

@@ -9,58 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from in_body import CELL, DENSITY, SPEED, E, energies, frame_case, period, run_to_end
 from mpm3dpp import Case, Simulation, _core, open_results, run_case
 from same_bits import check_same_bits
 from worlds import check_worlds
-
-CELL, DENSITY, E = 1e-3, 1000.0, 1e7
-SPEED = 100.0  # of waves along a bar of E, without contraction
-
-
-def frame_case(
-    dimension: int,
-    body: dict[str, Any],
-    end_time: float,
-    nu: float = 0.3,
-    run: dict[str, Any] | None = None,
-    **more: Any,
-) -> Case:
-    material = {"density": DENSITY, "strength": {"elastic": {"E": E, "nu": nu}}}
-    return Case.model_validate(
-        {
-            "grid": {"dimension": dimension, "cell_size": CELL},
-            "run": {"end_time": end_time, **(run or {})},
-            "material": {"m": material},
-            "body": {"a": {"material": "m", "frame": "material", **body}},
-            **more,
-        }
-    )
-
-
-def run_to_end(simulation: Simulation, every: int, look: Any = None) -> tuple[dict, np.ndarray]:
-    """Return the columns of all steps; times, and what `look` sees every so many steps."""
-    core, end = simulation.core, simulation.case.run.end_time
-    rows, seen = [core.history()], []
-    while simulation.time < end:
-        simulation.advance(every, end)
-        rows.append(core.history())
-        if look is not None:
-            seen.append((simulation.time, look(simulation)))
-    columns = dict(zip(core.history_columns, np.concatenate(rows).T, strict=True))
-    return columns, np.array(seen).T
-
-
-def energies(columns: dict[str, np.ndarray]) -> np.ndarray:
-    """Kinetic and internal energy over that at the start, of every step."""
-    total = columns["kinetic"] + columns["internal"]
-    return np.asarray(total / total[0])
-
-
-def period(times: np.ndarray, values: np.ndarray) -> float:
-    """Twice the mean time between two changes of sign."""
-    k = np.flatnonzero(np.diff(np.sign(values)))
-    at = times[k] - values[k] * (times[k + 1] - times[k]) / (values[k + 1] - values[k])
-    return float(2.0 * (at[-1] - at[0]) / (len(at) - 1))
 
 
 @pytest.mark.parametrize(
@@ -236,6 +188,10 @@ frame = "material"
 shape = { SHAPE = { centre = CENTRE, radius = "9 mm" } }
 velocity = VELOCITY
 damping = { mass = 5, local = 0.1 }
+[load.tip]
+body = "one"
+point = TIP
+force = PULL
 [body.two]
 material = "soft"
 shape = { SHAPE = { centre = OTHER, radius = "7 mm" } }
@@ -248,9 +204,11 @@ velocity = VELOCITY
 """
 
 
-def several(dimension: int) -> str:
+def several(dimension: int, averages: bool) -> Case:
     """Return a case with bodies of both frames, which deform plastically."""
     text = IN_BODY.replace("DIMENSION", str(dimension))
+    if averages:
+        text = text.replace('damping = { stiffness = "10 us" }', "volume_averaging = true")
     v = ["4", "-3", "2"][:dimension]
     f = [
         f'{{ expression = "{a}" }}'
@@ -261,20 +219,25 @@ def several(dimension: int) -> str:
         "CENTRE": [0.001, 0.002, 0.0005][:dimension],
         "OTHER": [0.03, 0.012, 0.0005][:dimension],
         "THIRD": [0.03, -0.012, 0.0005][:dimension],
+        "TIP": [0.008, 0.002, 0.0005][:dimension],
+        "PULL": [20.0, 30.0, -10.0][:dimension],
     }.items():
         text = text.replace(word, str(value))
     text = text.replace("SHAPE", ("disc", "sphere")[dimension - 2])
     text = text.replace("VELOCITY", f"[{', '.join(v)}]\nangular_velocity = SPIN")
     text = text.replace("SPIN", "300" if dimension == 2 else "[100, -50, 300]")
-    return text.replace("damping = { mass", f"body_force = [{', '.join(f)}]\ndamping = {{ mass")
+    text = text.replace("damping = { mass", f"body_force = [{', '.join(f)}]\ndamping = {{ mass")
+    return Case.from_text(text)
 
 
+@pytest.mark.parametrize("averages", [False, True])
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_another_world_is_the_same(dimension: int) -> None:
-    check_worlds(Case.from_text(several(dimension)), 300 if dimension == 2 else 60, "", meet=False)
+def test_another_world_is_the_same(dimension: int, averages: bool) -> None:
+    check_worlds(several(dimension, averages), 300 if dimension == 2 else 60, "", meet=False)
 
 
+@pytest.mark.parametrize("averages", [False, True])
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_the_same_bits(dimension: int, tmp_path: Any) -> None:
+def test_the_same_bits(dimension: int, averages: bool, tmp_path: Any) -> None:
     """With any number of threads, stages fused or not, and after a restart."""
-    check_same_bits(Case.from_text(several(dimension)), tmp_path)
+    check_same_bits(several(dimension, averages), tmp_path)

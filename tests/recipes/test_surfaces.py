@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from in_body import blocks
 from mpm3dpp import Case, Simulation, _core
 from same_bits import check_same_bits
 from worlds import check_worlds
@@ -382,8 +383,9 @@ def test_a_bed_comes_to_rest() -> None:
     assert min(places) > 0.9 * radius and max(places) > 3.0 * radius  # They stand on each other.
 
 
+@pytest.mark.parametrize("averages", [False, True])
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_half_a_block_moves_as_the_half_of_a_whole_one(dimension: int) -> None:
+def test_half_a_block_moves_as_the_half_of_a_whole_one(dimension: int, averages: bool) -> None:
     """Nodes beyond a slip wall have images: to rounding, on a floor with friction."""
     h, ends = 1e-3, []
     for half in (True, False):
@@ -411,7 +413,11 @@ def test_half_a_block_moves_as_the_half_of_a_whole_one(dimension: int) -> None:
                     "short_wave_damping": 0.01,
                 },
                 "material": {
-                    "m": {"density": 1000.0, "strength": {"neo_hookean": {"K": 1.2e6, "G": 4e5}}}
+                    "m": {
+                        "density": 1000.0,
+                        "strength": {"neo_hookean": {"K": 1.2e6, "G": 4e5}},
+                        "volume_averaging": averages,
+                    }
                 },
                 "body": {"b": body},
             }
@@ -460,59 +466,6 @@ def test_a_bar_on_a_wall_vibrates(wall: str) -> None:
     around = abs(times - 2 * period) < 0.1 * period
     peak = times[around][kinetic[around].argmax()]
     assert peak / (2 * period) == pytest.approx(1.0, abs=0.01)
-
-
-BLOCKS = """
-[grid]
-dimension = DIMENSION
-cell_size = "2 mm"
-box = { lower = LOWER, upper = UPPER, walls = { y_min = "contact" }, friction = { y_min = 0.4 } }
-[run]
-end_time = "1 s"
-gravity = GRAVITY
-[contact]
-friction = 0.3
-restitution = 0.8
-[material.soft]
-density = 1000
-strength = { j2 = { E = "1 MPa", nu = 0.3, Y0 = "20 kPa", H = "50 kPa" } }
-[material.rigid]
-density = 3000
-strength = { rigid = {} }
-[body.one]
-material = "soft"
-frame = "material"
-particles_per_cell = 2
-shape = { box = { lower = ONE, upper = TO } }
-velocity = FAST
-[body.two]
-material = "soft"
-frame = "material"
-particles_per_cell = 2
-shape = { box = { lower = TWO, upper = UNTIL } }
-[body.three]
-material = "rigid"
-shape = { box = { lower = THREE, upper = END } }
-"""
-
-
-def blocks(dimension: int) -> str:
-    """Return a case of a block that hits another askew, and a rigid one, on a wall."""
-    text = BLOCKS.replace("DIMENSION", str(dimension))
-    for word, value in {
-        "LOWER": [-0.04, 0.0, -0.04],
-        "UPPER": [0.06, 0.06, 0.04],
-        "GRAVITY": [0.0, -9.81, 0.0],
-        "ONE": [-0.012, 0.0, -0.004],
-        "TO": [0.0, 0.008, 0.004],
-        "FAST": [4.0, -0.2, 0.3],
-        "TWO": [0.0, 0.002, -0.002],
-        "UNTIL": [0.008, 0.012, 0.006],
-        "THREE": [0.008, 0.0, -0.004],
-        "END": [0.016, 0.01, 0.004],
-    }.items():
-        text = text.replace(f"= {word}", f"= {value[:dimension]}")
-    return text
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

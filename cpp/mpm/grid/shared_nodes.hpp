@@ -16,6 +16,9 @@ void list_shared_nodes(TileGrid<D>& grid, Threads& threads);
 /// which the last half of these is summed: their first half is no sum, but what they keep.
 template <int D>
 void sum_shared_nodes(TileGrid<D>& grid, Threads& threads, int first, int last, bool kept = true);
+/// The same for a number that stands beside the displacements of nodes that are kept.
+template <int D>
+void sum_kept_number(TileGrid<D>& grid, Threads& threads, int number);
 /// The same for what walls need of the nodes, if they do: dashpots, springs.
 template <int D>
 void sum_shared_at_walls(TileGrid<D>& grid, Threads& threads);

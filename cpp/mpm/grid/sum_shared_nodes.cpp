@@ -108,6 +108,26 @@ void sum_shared_nodes(TileGrid<D>& grid, Threads& threads, int first, int last, 
 }
 
 template <int D>
+void sum_kept_number(TileGrid<D>& grid, Threads& threads, int number) {
+  threads.for_each(grid.primaries.size(), [&](std::size_t k) {
+    const Patch<D>& patch = grid.patches[grid.primaries[k]];
+    if (!patch.keeps) return;
+    const auto at = [&](const SharedEntry<D>& one) -> double& {
+      const std::int32_t q = patch.neighbour[one.neighbour];
+      return grid.block(static_cast<std::size_t>(q)).displacements[one.node][number];
+    };
+    std::span left(grid.shared.entries.data() + patch.shared.first, patch.shared.entries());
+    for (std::size_t holders = 2; holders <= SharedNodes<D>::most; ++holders)
+      for (int m = patch.shared.groups[holders]; m > 0; --m, left = left.subspan(holders)) {
+        const auto all = left.first(holders);
+        double sum = 0.0;
+        for (const SharedEntry<D>& one : all) sum += at(one);
+        for (const SharedEntry<D>& one : all) at(one) = sum;
+      }
+  });
+}
+
+template <int D>
 void sum_shared_at_walls(TileGrid<D>& grid, Threads& threads) {
   const auto none = [](const Patch<D>&) {};
   if (grid.has_dashpots)
@@ -122,5 +142,7 @@ template void sum_shared_nodes<2>(TileGrid<2>&, Threads&, int, int, bool);
 template void sum_shared_nodes<3>(TileGrid<3>&, Threads&, int, int, bool);
 template void sum_shared_at_walls<2>(TileGrid<2>&, Threads&);
 template void sum_shared_at_walls<3>(TileGrid<3>&, Threads&);
+template void sum_kept_number<2>(TileGrid<2>&, Threads&, int);
+template void sum_kept_number<3>(TileGrid<3>&, Threads&, int);
 
 }  // namespace mpm

@@ -2,6 +2,7 @@
 
 #include "mpm/comm/all_sums.hpp"
 #include "mpm/loads/carry_loads.hpp"
+#include "mpm/step/kept_nodes.hpp"
 #include "mpm/step/nodes_around.hpp"
 #include "mpm/step/stage_functions.hpp"
 
@@ -20,6 +21,7 @@ void for_each_loaded_piece(Domain<D>& domain, std::size_t p, std::size_t l, F&& 
   // A body that is held while the run settles has none until then.
   if (load.body != patch.body || !domain.body_of(patch).deforms()) return;
   ParticlePool<D>& pool = domain.pool_of(patch);
+  const NodeBlock<D> block = domain.grid.block(p);
   // The box of the particle's function. Within it the nodes around the piece are among those to
   // which the particle gives mass.
   const double reach = half_width(grid.basis, domain.body_of(patch).mean_edge / grid.cell_size);
@@ -46,11 +48,6 @@ void for_each_loaded_piece(Domain<D>& domain, std::size_t p, std::size_t l, F&& 
       }
       const int first = around.first + patch.shape.distance(shift);
       assert(first >= 0 && first + patch.shape.corner_offset.back() < patch.shape.node_count);
-      Vec<double, D> place;
-      for (int a = 0; a < D; ++a) {
-        const auto k = static_cast<std::size_t>(a);
-        place[a] = grid.origin[a] + grid.cell_size * (around.lower[k] + shift[k] + xi[a]);
-      }
       const auto each_node = [&](auto&& g) {
         for (int corner = 0; corner < Tile<D>::corners; ++corner) {
           double N = 1.0;
@@ -58,7 +55,16 @@ void for_each_loaded_piece(Domain<D>& domain, std::size_t p, std::size_t l, F&& 
           g(first + patch.shape.corner_offset[static_cast<std::size_t>(corner)], N);
         }
       };
-      f(load.force_on(piece), each_node, place);
+      Vec<double, D> place;
+      for (int a = 0; a < D; ++a) {
+        const auto k = static_cast<std::size_t>(a);
+        place[a] = grid.origin[a] + grid.cell_size * (around.lower[k] + shift[k] + xi[a]);
+      }
+      if (patch.keeps)
+        each_node([&](int node, double N) {
+          for (int a = 0; a < D; ++a) place[a] += N * block.displacements[node][a];
+        });
+      f(load.force_on(piece_in_space(pool, row, piece)), each_node, place);
     });
   });
 }
@@ -66,11 +72,15 @@ void for_each_loaded_piece(Domain<D>& domain, std::size_t p, std::size_t l, F&& 
 /// The loads of a step: their means over it, and room for the patches' sums.
 template <int D>
 void start_loads(Domain<D>& domain) {
-  // The mean over the step, in closed form: the impulse is exact whatever the step's length.
-  const double now = load_time(domain.time), next = load_time(domain.time + domain.time_step);
-  for (SurfaceLoad<D>& load : domain.loads)
+  // The mean over the time that the force acts, in closed form: the impulse is exact whatever the
+  // step's length.
+  for (SurfaceLoad<D>& load : domain.loads) {
+    const bool keeps = domain.body_at(load.body).keeps_nodes();
+    const double from = domain.time - (keeps ? 0.5 * domain.step_before : 0.0),
+                 to = from + time_of_forces(domain, keeps);
     for (int a = 0; a < D; ++a)
-      load.mean[a] = load.value[static_cast<std::size_t>(a)].mean(now, next);
+      load.mean[a] = load.value[static_cast<std::size_t>(a)].mean(load_time(from), load_time(to));
+  }
   domain.load_parts.assign(domain.grid.patches.size() * domain.loads.size(),
                            Vec<double, D>::zero());
 }
@@ -84,6 +94,7 @@ void start_loads(Domain<D>& domain) {
 template <int D>
 void scatter_loads(Domain<D>& domain, std::size_t p) {
   const NodeBlock<D> block = domain.grid.block(p);
+  const double acts = time_of_forces(domain, domain.grid.patches[p].keeps);
   for (std::size_t l = 0; l < domain.loads.size(); ++l) {
     Vec<double, D>& total = domain.load_parts[p * domain.loads.size() + l];
     for_each_loaded_piece(
@@ -91,8 +102,7 @@ void scatter_loads(Domain<D>& domain, std::size_t p) {
           // Per patch and load, so that no thread adds to another's; summed exactly below.
           total += force;
           if (domain.settles()) domain.sums[p].applied += norm(force);
-          domain.sums[p].angular.loads +=
-              domain.time_step * cross(in_space<D>(place), in_space<D>(force));
+          domain.sums[p].angular.loads += acts * cross(in_space<D>(place), in_space<D>(force));
           nodes([&](int node, double N) {
             for (int a = 0; a < D; ++a) block.force(a)[node] += N * force[a];
           });
@@ -140,7 +150,7 @@ void load_surfaces(Domain<D>& domain) {
   for (std::size_t l = 0; l < count; ++l) {
     SurfaceLoad<D>& load = domain.loads[l];
     for (std::size_t a = 0; a < D; ++a) load.force[static_cast<int>(a)] = forces[D * l + a].value();
-    load.impulse += domain.time_step * load.force;
+    load.impulse += time_of_forces(domain, domain.body_at(load.body).keeps_nodes()) * load.force;
   }
 }
 

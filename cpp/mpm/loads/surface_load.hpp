@@ -73,10 +73,10 @@ struct SurfacePiece {
   double size = 0.0;           // area [m^2]: at an edge more than |area|; at a point a share
   Vec<double, D> area;         // outward area vector [m^2]
   Vec<double, D> arm;          // from the particle to the middle of the piece [m]
+  // Of a body that keeps its nodes these three are as they were in the body, for ever.
 
-  /// Take it along with its particle: da = cof(F) dA (Nanson), dx = F dX; L as above.
-  void carry(const Mat<double, D>& L) {
-    const Mat<double, D> F = deformation(L);
+  /// As F takes it along with its particle: da = cof(F) dA (Nanson), dx = F dX.
+  void deform(const Mat<double, D>& F) {
     // The size follows the vector's length: at an edge, where vectors of two sides have been added,
     // the size is larger than that, and no cofactor is its own. A share stays what it is.
     const double before = norm(area);
@@ -84,6 +84,9 @@ struct SurfacePiece {
     if (before > 0.0) size *= norm(area) / before;
     arm = product(F, arm);
   }
+
+  /// By the deformation of a step; L as above.
+  void carry(const Mat<double, D>& L) { deform(deformation(L)); }
 };
 
 template <int D>

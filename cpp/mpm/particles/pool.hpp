@@ -136,6 +136,27 @@ void for_each_piece_of(Pool& pool, std::uint32_t row, F&& f) {
     f(pool.pieces[k - 1]);
 }
 
+/// By how much the mean stress that forces use is less than that of the material, where bodies on
+/// nodes of their own average their pressures; in all that is shown [Pa].
+template <int D>
+double averaged_away(const ParticlePool<D>& pool, std::uint32_t row) {
+  if (pool.deformation < 0 || pool.at.force_pressure < 0) return 0.0;
+  const int q = pool.at.viscosity_pressure;
+  return pool.columns.component(pool.at.force_pressure)[row] -
+         (q >= 0 ? pool.columns.component(q)[row] : 0.0);
+}
+
+/// A piece of a load as it is in space by now.
+template <int D>
+SurfacePiece<D> piece_in_space(const ParticlePool<D>& pool, std::uint32_t row,
+                               SurfacePiece<D> piece) {
+  if (pool.deformation < 0) return piece;
+  Mat<double, D> F;
+  for (int k = 0; k < D * D; ++k) F[k / D][k % D] = pool.deformation_part(k)[row];
+  piece.deform(F);
+  return piece;
+}
+
 /// Kinetic energy of a particle [J]; with an affine part m D C:C / 2 of it, D = `affine_moment`
 /// [m^2].
 template <int D>

@@ -2,6 +2,7 @@
 // A step of a body on nodes of its own, as step/kept_nodes.hpp writes it: one particle and one node
 // at a time. Nodes keep u and v, particles F; where these lie in the body, X, is that of the start.
 #include "mpm/math/inverse.hpp"
+#include "mpm/reference/loads.hpp"
 #include "mpm/reference/step.hpp"
 
 namespace mpm::reference {
@@ -12,6 +13,8 @@ struct KeptNodes {
   Body<D> body{};                          // its nodes have masses and velocities
   std::map<Index<D>, Vec<double, D>> u{};  // [m]
   std::vector<Mat<double, D>> F{};         // of each particle
+  std::vector<double> taken{};             // of its mean stress, by averaging [Pa]
+  std::vector<Load<D>> loads{};            // pieces as they were at the start
   Vector3 L = Vector3::zero(), spin = L;   // of the body about its centre
   bool begun = false;
   double kinetic_excess = 0.0;  // of the nodes [J]
@@ -30,6 +33,7 @@ struct KeptNodes {
     Mat<double, D> one{};
     for (int a = 0; a < D; ++a) one[a][a] = 1.0;
     F.assign(body.particles.size(), one);
+    taken.assign(F.size(), 0.0);
   }
 
   /// v -= R G R v of damp_short_waves.cpp, (W1); c over h for the time between such steps is
@@ -80,8 +84,49 @@ struct KeptNodes {
         for (int a = 0; a < D; ++a)
           for (int b = 0; b < D; ++b)
             for (int c = 0; c < D; ++c)
-              body.nodes[i].f[a] -= p.V * p.sigma(a, b) * inverse[c][b] * dN[c];
+              body.nodes[i].f[a] -=
+                  p.V * (p.sigma(a, b) - (a == b ? taken[k] : 0.0)) * inverse[c][b] * dN[c];
       });
+    }
+  }
+
+  /// f_i += sum N_i(X_p + A) f over the pieces, f = -p a or t |a|, with a = cof(F_p) a of the start
+  /// and the size as much larger as that is longer, N_i and the limits of places those of
+  /// reference/loads.hpp; of p and t the means over the time that forces act.
+  void load_surfaces() {
+    const double from = step.t - 0.5 * step.dt_before, to = step.t + 0.5 * step.dt;
+    for (const Load<D>& load : loads) {
+      Vec<double, D> value;
+      for (int a = 0; a < D; ++a) value[a] = load.value[static_cast<std::size_t>(a)].mean(from, to);
+      for (const Piece<D>& piece : load.pieces) {
+        const Vec<double, D> area = product(cofactor(F[piece.particle]), piece.a);
+        const double size = piece.size * norm(area) / norm(piece.a);
+        const Vec<double, D> f = load.pressure ? -value[0] * area : size * value;
+        for_each_hat_node(step, body.particles[piece.particle].X, piece.middle,
+                          [&](const Index<D>& i, double N) { body.nodes[i].f += N * f; });
+      }
+    }
+  }
+
+  /// (P1), (P2) of step/average_in_body.cpp, with b = .95.
+  void average() {
+    std::map<Index<D>, double> sums;
+    const auto mean = [](const Particle<D>& p) {
+      double sum = 0.0;
+      for (int a = 0; a < D; ++a) sum += p.sigma(a, a) / D;
+      return sum;
+    };
+    for (const Particle<D>& p : body.particles)
+      step.for_each_node(p.X, [&](const Index<D>& i, double N, const Vec<double, D>&) {
+        sums[i] += p.V * mean(p) * N;
+      });
+    for (std::size_t k = 0; k < F.size(); ++k) {
+      const Particle<D>& p = body.particles[k];
+      double projected = 0.0;
+      step.for_each_node(p.X, [&](const Index<D>& i, double N, const Vec<double, D>&) {
+        projected += N * sums[i] / body.nodes[i].m;
+      });
+      taken[k] = 0.95 * (mean(p) - p.m / p.V * projected);
     }
   }
 

@@ -6,6 +6,28 @@
 
 namespace mpm::reference {
 
+/// f(i, N) for the nodes around the middle of a piece, which is so far from its particle: N are the
+/// hats, at a place held between the nodes around the particle, or in the box over which the
+/// particle's own function is a mean.
+template <int D, class F>
+void for_each_hat_node(const Step<D>& step, const Vec<double, D>& particle,
+                       const Vec<double, D>& middle, F&& f) {
+  Vec<double, D> x;  // [cells]
+  Index<D> low, high;
+  for (int a = 0; a < D; ++a) {
+    const double at = particle[a] / step.h;
+    x[a] = std::clamp(at + middle[a] / step.h, std::min(std::floor(at), at - step.half_width),
+                      std::max(std::floor(at) + 1.0, at + step.half_width));
+    low[static_cast<std::size_t>(a)] = static_cast<std::int32_t>(std::floor(x[a]));
+    high[static_cast<std::size_t>(a)] = low[static_cast<std::size_t>(a)] + 1;
+  }
+  for_each_index<D>(low, high, [&](const Index<D>& i) {
+    double N = 1.0;
+    for (int a = 0; a < D; ++a) N *= linear(x[a] - i[static_cast<std::size_t>(a)]).N;
+    if (N > 0.0) f(i, N);
+  });
+}
+
 /// f_i += sum N_i(x) f over the pieces, f = -p a or t |a|, of p and t the means over the step; N_i
 /// are the hats and x is the middle of the piece. It is held between the nodes around the particle,
 /// or in the box over which the particle's own function is a mean: there all nodes have mass.
@@ -22,21 +44,8 @@ void load_surfaces(Step<D>& step) {
     for (const Piece<D>& piece : load.pieces) {
       const Vec<double, D> f = load.pressure ? -value[0] * piece.a : piece.size * value;
       load.force += f;
-      Vec<double, D> x;  // [cells]
-      Index<D> low, high;
-      for (int a = 0; a < D; ++a) {
-        const double at = b.particles[piece.particle].x[a] / step.h;
-        x[a] = std::clamp(at + piece.middle[a] / step.h,
-                          std::min(std::floor(at), at - step.half_width),
-                          std::max(std::floor(at) + 1.0, at + step.half_width));
-        low[static_cast<std::size_t>(a)] = static_cast<std::int32_t>(std::floor(x[a]));
-        high[static_cast<std::size_t>(a)] = low[static_cast<std::size_t>(a)] + 1;
-      }
-      for_each_index<D>(low, high, [&](const Index<D>& i) {
-        double N = 1.0;
-        for (int a = 0; a < D; ++a) N *= linear(x[a] - i[static_cast<std::size_t>(a)]).N;
-        if (N > 0.0) b.nodes[i].f_load += N * f;
-      });
+      for_each_hat_node(step, b.particles[piece.particle].x, piece.middle,
+                        [&](const Index<D>& i, double N) { b.nodes[i].f_load += N * f; });
     }
   }
   for (Body<D>& b : step.bodies) {

@@ -35,12 +35,15 @@ void copy_column(const Domain<D>& domain, const Slices& slices, int number, cons
   std::iota(places.begin(), places.end(), 0);
   if (name == "stress" && D == 2) places[3] = 5;
   gather(comm, slices, width, places, to, [&](auto&& f) {
-    for (int c = 0; c < info.components; ++c)
+    for (int c = 0; c < info.components; ++c) {
+      const bool normal = name == "stress" && c < 3;
       of.columns.with_component(info.first + c, [&](const auto* from) {
         for_each_row(domain.grid.patches, of, number, b.removed_here, [&](std::uint32_t row) {
-          f(of.id[row], static_cast<std::size_t>(c), double{from[row]});
+          const double less = normal ? averaged_away(of, row) : 0.0;
+          f(of.id[row], static_cast<std::size_t>(c), double{from[row]} - less);
         });
       });
+    }
   });
 }
 

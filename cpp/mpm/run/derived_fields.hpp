@@ -42,6 +42,7 @@ ParticleState particle_state(const Domain<D>& domain, const Body<D>& body,
                   row};
   for (int c = 0; c < Sym<double, D>::size; ++c)
     p.stress[D == 2 && c == 3 ? 5 : c] = pool.stress(c)[row];
+  for (int c = 0; c < 3; ++c) p.stress[c] -= averaged_away(pool, row);
   if (pool.start_position >= 0)
     for (int a = 0; a < D; ++a)
       p.displacement[a] = pool.x(a)[row] - pool.columns.component(pool.start_position + a)[row];

@@ -157,7 +157,7 @@ std::vector<LoadRecord> load_records(const Domain<D>& domain) {
   std::vector<ExactSum> areas(records.size());
   domain.for_each_particle([&](const ParticlePool<D>& pool, std::uint32_t row) {
     for_each_piece_of(pool, row, [&](const SurfacePiece<D>& piece) {
-      areas[static_cast<std::size_t>(piece.load)].add(piece.size);
+      areas[static_cast<std::size_t>(piece.load)].add(piece_in_space(pool, row, piece).size);
     });
   });
   all_sum(*domain.grid.partition.comm, areas);

@@ -11,6 +11,7 @@
 #include "mpm/schedule/scatter.hpp"
 #include "mpm/step/kept_nodes.hpp"
 #include "mpm/step/patch_loops.hpp"
+#include "mpm/step/stage_functions.hpp"
 #include "mpm/step/transfer/flip.hpp"
 #include "mpm/step/transfer/mapping.hpp"
 #include "mpm/surfaces/restitution.hpp"
@@ -152,7 +153,6 @@ void check_in_body(const Material& material) {
   check_frame(!material.breaks_up(),
               "a material that flows or breaks: fluids, gases, explosives, loose soils, failure "
               "models and spall strengths need frame = \"updated\"");
-  check_frame(!material.averages_volume, "volume_averaging: leave one of them away");
 }
 
 template <int D>
@@ -168,23 +168,18 @@ void check_in_body(const Simulation<D>& simulation) {
                       [](const Body<D>& body) { return body.deforms() && !body.keeps_nodes(); }),
               "contact with bodies that have another yet: give all the same, or "
               "contact.enabled = false");
-  check_frame(domain.bodies.size() == 1 || !s.contact.bonded,
-              "bonded bodies yet: give frame = \"updated\"");
   const bool box = s.grid.box_cells[0] > 0;
   check_frame(!box || std::ranges::find(s.grid.walls, Wall::absorbing) == s.grid.walls.end(),
               "walls of the box that absorb yet: leave them out, or give frame = \"updated\"");
   const bool holds =
       std::ranges::any_of(s.grid.walls, [](Wall w) { return w == Wall::slip || w == Wall::fixed; });
-  check_frame(!box || !holds || domain.bodies.size() == 1 || !s.contact.enabled,
+  check_frame(!box || !holds || domain.bodies.size() == 1 || !s.contact.enabled || s.contact.bonded,
               "walls of the box that are slip or fixed where bodies touch each other yet: give "
               "\"contact\", or contact.enabled = false");
   check_frame(!box || !holds || !restitution_takes(s.contact),
               "walls of the box that are slip or fixed and a restitution yet: leave one out");
   check_frame(!s.grid.outflow, "a region that particles leave: give frame = \"updated\"");
   check_frame(!s.grid.coarsening, "grid.coarsening: give frame = \"updated\"");
-  for (const SurfaceLoad<D>& load : domain.loads)
-    check_frame(!domain.body_at(load.body).keeps_nodes(),
-                "loads on its surface yet: give frame = \"updated\"");
   check_frame(domain.grid.partition.comm->size() == 1, "several ranks yet: run it on one");
   for (const HeldBody& held_body : simulation.held)
     check_frame(!domain.body_at(held_body.body).keeps_nodes(),
@@ -205,6 +200,7 @@ void start_in_body(Domain<D>& domain) {
   });
   list_kept_spins(domain);
   find_kept_velocities(domain);
+  start_average_in_body(domain);
 }
 
 template <int D>

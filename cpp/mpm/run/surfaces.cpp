@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "mpm/surfaces/bonds.hpp"
 #include "mpm/surfaces/law.hpp"
 #include "mpm/surfaces/near_points.hpp"
 #include "mpm/surfaces/overlaps.hpp"
@@ -62,8 +63,11 @@ void start_surfaces(Domain<D>& domain) {
   if (domain.surfaces.given.empty()) return;
   start_parts(domain);
   domain.surfaces.onset = onset_of(domain);
+  if (domain.surfaces.meet && bonds(domain.contact_settings)) add_bonds(domain);
   if (domain.surfaces.meet) find_near_points(domain);
   set_back_overlaps(domain);
+  domain.surfaces.given = {};
+  domain.surfaces.given_of = {};
 }
 
 namespace {

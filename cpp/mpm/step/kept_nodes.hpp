@@ -60,10 +60,14 @@ void hold_kept_nodes(const TileGrid<D>& grid, const Patch<D>& patch, const NodeB
   reflect_at_walls(grid, patch, block, at);
 }
 
-/// For how long the forces of a step act on the nodes of a patch [s].
+/// For how long the forces of a step act on nodes that are kept, or not [s].
+template <int D>
+double time_of_forces(const Domain<D>& domain, bool keeps) {
+  return keeps ? 0.5 * (domain.time_step + domain.step_before) : domain.time_step;
+}
 template <int D>
 double time_of_forces(const Domain<D>& domain, const Patch<D>& patch) {
-  return patch.keeps ? 0.5 * (domain.time_step + domain.step_before) : domain.time_step;
+  return time_of_forces(domain, patch.keeps);
 }
 
 /// The nodes of a block go with the velocities that they have by now, (M3); kinetic energy and

@@ -55,6 +55,7 @@ struct Schemes {
       S::advance_nodes,
       S::heat_gases,
       S::update_in_body,
+      S::average_in_body,
       S::release,
       S::advance_particles,
       S::push_rigid,
@@ -95,6 +96,7 @@ struct Schemes {
       S::advance_nodes,
       S::heat_gases,
       S::update_in_body,
+      S::average_in_body,
       S::release,
       S::advance_particles,
       S::push_rigid,
@@ -137,6 +139,7 @@ struct Schemes {
       S::advance_nodes,
       S::heat_gases,
       S::update_in_body,
+      S::average_in_body,
       S::release,
       S::advance_particles,
       S::push_rigid,
@@ -171,8 +174,9 @@ struct Schemes {
     if (extra != Extra::filter) rest = without(rest, S::filter);
     if (extra != Extra::release) rest = without(without(rest, S::release), S::restore);
     if (in_body) return rest;
-    for (const Stage<D>& stage : {S::damp_short_waves, S::load_by_surfaces, S::turn_in_body,
-                                  S::update_in_body, S::push_rigid, S::touch_surfaces})
+    for (const Stage<D>& stage :
+         {S::damp_short_waves, S::load_by_surfaces, S::turn_in_body, S::update_in_body,
+          S::average_in_body, S::push_rigid, S::touch_surfaces})
       rest = without(rest, stage);
     return rest;
   }

@@ -114,6 +114,11 @@ void advance_nodes(Domain<D>& domain);
 /// Particles of bodies on nodes of their own at the end of the step, and their stress.
 template <int D>
 void update_in_body(Domain<D>& domain);
+template <int D>
+void average_in_body(Domain<D>& domain);
+/// The same of the stress at the start.
+template <int D>
+void start_average_in_body(Domain<D>& domain);
 
 /// For transfers that take the velocity of the grid: at nodes in contact that without eqs. (6)-(7)
 /// while particles are advanced, and the corrected one again (decision 0046).

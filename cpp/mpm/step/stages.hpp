@@ -158,6 +158,11 @@ struct Stages : Data {
       "update in the body", mpm::update_in_body<D>,
       lists | position | mass | volume | stress | deformation | kept_nodes | patch_sums,
       position | velocity | volume | stress | deformation | patch_sums, true};
+  // Of the new stress, for the forces of the next step.
+  static constexpr Row average_in_body{
+      "average pressure in bodies", mpm::average_in_body<D>,
+      lists | velocity | mass | volume | stress | kept_nodes | patch_sums,
+      force_pressure | kept_nodes | patch_sums};
   // With the velocities that strain, before particles are released from what contact has corrected.
   static constexpr Row heat_gases{"heat gases",
                                   mpm::heat_gases<D>,

@@ -1,5 +1,6 @@
 // Bodies on nodes of their own: places and deformation of the particles from the displacements of
 // the nodes, (M1) of kept_nodes.hpp, and from its change, (M4), the stress.
+#include "mpm/math/batch_math.hpp"
 #include "mpm/math/inverse.hpp"
 #include "mpm/schedule/cell_loop.hpp"
 #include "mpm/schedule/choose.hpp"
@@ -25,6 +26,12 @@ template <int W, int D, BasisModel B>
   const NodeStrides<D> stride(patch.shape);
   const LocalPosition<D> local_position(grid, pool);
   const T per_cell_size(1.0 / grid.cell_size);
+  // With averaged pressures the forces have worked on a part of the change of volume alone.
+  const bool averages = material.averages_volume;
+  const auto column = [&](int at) { return at >= 0 ? pool.columns.component(at) : nullptr; };
+  const double *const q = column(pool.at.viscosity_pressure), *const taken =
+                                                                  column(pool.at.force_pressure);
+  T not_worked(0.0);
   StressSums& sums = domain.sums[p].stress;
   MaterialBlock<D> block;
   const auto flush = [&] {
@@ -53,12 +60,19 @@ template <int W, int D, BasisModel B>
         L[i][j].store(block.gradient[i][j] + block.count);
       });
       unrolled<D>([&](auto a) { store(pool.x(a), rows, load(pool.listed(a), rows) + u[a]); });
+      if (averages) {
+        const T growth = log(determinant(F) / determinant(before));
+        const T beyond = q ? load(taken, rows) - load(q, rows) : load(taken, rows);
+        not_worked += of_valid(rows, load(pool.volume(), rows) * beyond * growth);
+        store(pool.v(1), rows, growth);
+      }
       store(pool.v(0), rows, sqrt(largest_stretch_squared(inverse_of(F))));
       unrolled<W>([&](auto k) { block.row[block.count + k] = rows[k]; });
       block.count += static_cast<std::size_t>(rows.count);
     });
   });
   if (block.count > 0) flush();
+  sums.internal -= 0.5 * sum(not_worked);
   // Half of the work that the new stress does in a step with these velocities: of the mean of the
   // stress and of that at the start there are the sums.
   const double mean = sums.internal + sums.plastic + sums.viscous + sums.damped + sums.bounded;

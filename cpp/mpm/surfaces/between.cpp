@@ -15,6 +15,17 @@ void keep_deepest(ActingBetween<D>& pair, double overlap, const Vec<double, D>& 
   pair.place = place;
 }
 
+/// The last of the pairs so far if it is that of these bodies, or a new one.
+template <int D>
+ActingBetween<D>& last_of(std::vector<ActingBetween<D>>& all, int a, int b) {
+  if (all.empty() || all.back().a != a || all.back().b != b) {
+    all.emplace_back();
+    all.back().a = a;
+    all.back().b = b;
+  }
+  return all.back();
+}
+
 }  // namespace
 
 template <int D>
@@ -28,13 +39,8 @@ void sum_between(Domain<D>& domain) {
       if (!(touch.pushed > 0.0) || touch.opposite == part.body) continue;
       if (is_face(touch.opposite) && !faces) continue;
       const bool first = is_face(touch.opposite) || part.body < touch.opposite;
-      const int a = first ? part.body : touch.opposite, b = first ? touch.opposite : part.body;
-      if (all.empty() || all.back().a != a || all.back().b != b) {
-        all.emplace_back();
-        all.back().a = a;
-        all.back().b = b;
-      }
-      ActingBetween<D>& pair = all.back();
+      ActingBetween<D>& pair =
+          first ? last_of(all, part.body, touch.opposite) : last_of(all, touch.opposite, part.body);
       const double sign = first ? 1.0 : -1.0, size = norm(touch.push);
       const Vec<double, D> place = surfaces.places[touch.point] + touch.arm;
       pair.on_first += sign * (touch.push + touch.rub);
@@ -45,6 +51,14 @@ void sum_between(Domain<D>& domain) {
       pair.stiffness += touch.stiffness;
       keep_deepest(pair, touch.overlap, -sign * normalised(touch.push), place);
     }
+  for (const Bond<D>& bond : surfaces.bonds) {
+    const bool first = bond.from < bond.body;
+    ActingBetween<D>& pair =
+        first ? last_of(all, bond.from, bond.body) : last_of(all, bond.body, bond.from);
+    pair.on_first += (first ? 1.0 : -1.0) * bond.pull;
+    // They touch along no plane.
+    keep_deepest(pair, 0.0, Vec<double, D>::zero(), surfaces.places[bond.first]);
+  }
   std::ranges::stable_sort(all, [](const ActingBetween<D>& x, const ActingBetween<D>& y) {
     return x.a != y.a ? x.a < y.a : x.b < y.b;
   });

@@ -1,5 +1,6 @@
 #include "mpm/surfaces/near_points.hpp"
 
+#include "mpm/surfaces/bonds.hpp"
 #include "mpm/surfaces/felt.hpp"
 #include "mpm/surfaces/folds.hpp"
 #include "mpm/surfaces/point_boxes.hpp"
@@ -12,6 +13,7 @@ namespace {
 // own.
 constexpr double margin = 1.2, margin_of_awake = 0.3;  // spacings
 constexpr std::int64_t steps_between_speeds = 10;      // at most
+constexpr std::int32_t no_body = -1;  // of places that points are bonded to, which nothing touches
 
 template <int D>
 double reach_of_lists(const Surfaces<D>& surfaces) {
@@ -73,7 +75,7 @@ class BoxesAround {
         for (int x = -1; x <= 1; ++x)
           boxes_.for_each_at({middle.index[0] + x, middle.index[1] + y, middle.index[2] + z},
                              [&](const PointBox<D>& box) {
-                               if ((folds || box.body != middle.body) &&
+                               if (box.body >= 0 && (folds || box.body != middle.body) &&
                                    box.square_to(middle.low, middle.high) < square_)
                                  found.push_back(&box);
                              });
@@ -105,6 +107,7 @@ void find_near(const Domain<D>& domain, const PointBoxes<D>& boxes, const Folded
   part.near.clear();
   part.near_of.clear();
   for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
+    if (!(surfaces.points[c].area > 0.0)) continue;
     const Vec<double, D> here = surfaces.places[c];
     NearPoints near{c, -1, 0, 0, 0.0};
     double nearest = 0.0;
@@ -116,6 +119,7 @@ void find_near(const Domain<D>& domain, const PointBoxes<D>& boxes, const Folded
     };
     for (const PointBox<D>* const box : around.of(boxes.box_of(c), folds)) {
       if (part.as_one && folded.as_one(box->body)) continue;
+      if (is_bonded(surfaces, c, box->body)) continue;
       if (!(box->square_to(here, here) < square)) continue;
       if (box->body != near.body) {
         if (near.body >= 0) close_list();
@@ -163,7 +167,8 @@ void make_near_lists(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
   std::vector<std::int32_t> body_of(surfaces.points.size());
   for (const SurfacePart<D>& part : surfaces.parts)
-    std::fill_n(body_of.begin() + part.first_point, part.points, part.body);
+    for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c)
+      body_of[c] = surfaces.points[c].area > 0.0 ? part.body : no_body;
   const double reach = reach_of_lists(surfaces);
   const PointBoxes<D> boxes(domain.grid.origin, reach, surfaces.places, body_of);
   const FoldedBodies<D> folded(domain, reach);

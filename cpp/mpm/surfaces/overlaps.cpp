@@ -149,7 +149,7 @@ void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part) {
   std::size_t next = 0;
   for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
     // Bodies that do not deform are held by faces as a whole.
-    if (!part.as_one)
+    if (!part.as_one && surfaces.points[c].area > 0.0)
       for_each_face(domain, surfaces.places[c],
                     [&](Opposite face, double overlap, const Vec<double, D>& normal) {
                       const double back = set_back_of(surfaces, c, face);
@@ -161,6 +161,15 @@ void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part) {
       add_touch_of_body(domain, part, near, sum, set_back_of(surfaces, c, near.body));
     });
   }
+}
+
+template <int D>
+void for_each_near_surface(const Domain<D>& domain, const SurfacePart<D>& part,
+                           const std::function<void(const NearPoints&, double)>& f) {
+  std::size_t next = 0;
+  for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c)
+    for_each_body(domain.surfaces, part, c, 0.0, next,
+                  [&](const NearPoints& near, double sum) { f(near, SurfacePoint<D>(sum).zeta); });
 }
 
 template <int D>
@@ -177,7 +186,7 @@ void set_back_overlaps(Domain<D>& domain) {
         told.most = std::max(told.most, overlap);
         if (overlap > seen) ++told.particles;
       };
-      if (!part.as_one)
+      if (!part.as_one && surfaces.points[c].area > 0.0)
         for_each_face(domain, surfaces.places[c],
                       [&](Opposite face, double overlap, const auto&) { set_back(face, overlap); });
       for_each_body(surfaces, part, c, least, next, [&](const NearPoints& near, double sum) {
@@ -189,6 +198,10 @@ void set_back_overlaps(Domain<D>& domain) {
 
 template void find_overlaps<2>(const Domain<2>&, SurfacePart<2>&);
 template void find_overlaps<3>(const Domain<3>&, SurfacePart<3>&);
+template void for_each_near_surface<2>(const Domain<2>&, const SurfacePart<2>&,
+                                       const std::function<void(const NearPoints&, double)>&);
+template void for_each_near_surface<3>(const Domain<3>&, const SurfacePart<3>&,
+                                       const std::function<void(const NearPoints&, double)>&);
 template void set_back_overlaps<2>(Domain<2>&);
 template void set_back_overlaps<3>(Domain<3>&);
 

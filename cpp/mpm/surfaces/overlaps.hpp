@@ -8,6 +8,11 @@ namespace mpm {
 template <int D>
 void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part);
 
+/// f(near points, how high above their surface, in spacings) for what the points of a part feel.
+template <int D>
+void for_each_near_surface(const Domain<D>& domain, const SurfacePart<D>& part,
+                           const std::function<void(const NearPoints&, double)>& f);
+
 /// Before the first step: the surfaces of points that overlap faces or bodies are set back by that,
 /// so that nothing is pushed.
 template <int D>

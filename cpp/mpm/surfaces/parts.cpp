@@ -8,6 +8,13 @@
 namespace mpm {
 namespace {
 
+/// A point of the last host, or of one that is still to come.
+template <int D>
+void add_point(Surfaces<D>& surfaces, std::uint32_t host, const GivenPoint<D>& given) {
+  surfaces.points.push_back({host, given.offset, given.area});
+  surfaces.given_of.push_back(static_cast<std::uint32_t>(&given - surfaces.given.data()));
+}
+
 /// The part of a patch whose particles carry some of the points of its body, by their particles.
 template <int D>
 void add_part(Domain<D>& domain, std::size_t p, std::span<const GivenPoint<D>> of_body) {
@@ -31,8 +38,7 @@ void add_part(Domain<D>& domain, std::size_t p, std::span<const GivenPoint<D>> o
         host.xi[a] = local_coordinate(domain.grid.in_cells(pool.listed(a)[row], a),
                                       cell.cell[static_cast<std::size_t>(a)]);
       for (const GivenPoint<D>& point : own)
-        surfaces.points.push_back(
-            {static_cast<std::uint32_t>(surfaces.hosts.size()), point.offset, point.area});
+        add_point(surfaces, static_cast<std::uint32_t>(surfaces.hosts.size()), point);
       surfaces.hosts.push_back(host);
     }
   });
@@ -60,7 +66,7 @@ void add_part_as_one(Domain<D>& domain, std::size_t first_patch,
     for (const std::uint32_t row : pool.rows(patch))
       for (const GivenPoint<D>& point :
            std::ranges::equal_range(of_body, pool.id[row], {}, &GivenPoint<D>::particle)) {
-        surfaces.points.push_back({part.first_host, point.offset, point.area});
+        add_point(surfaces, part.first_host, point);
         surfaces.places.push_back(pool.position_of(row) + point.offset);
       }
   part.points = static_cast<std::uint32_t>(surfaces.points.size()) - part.first_point;
@@ -77,6 +83,12 @@ void start_parts(Domain<D>& domain) {
   std::ranges::stable_sort(given, [](const GivenPoint<D>& x, const GivenPoint<D>& y) {
     return x.body != y.body ? x.body < y.body : x.particle < y.particle;
   });
+  surfaces.parts.clear();
+  surfaces.part_of.clear();
+  surfaces.hosts.clear();
+  surfaces.points.clear();
+  surfaces.places.clear();
+  surfaces.given_of.clear();
   for (std::size_t p = 0; p < domain.grid.patches.size(); ++p) {
     const auto own =
         std::ranges::equal_range(given, domain.grid.patches[p].body, {}, &GivenPoint<D>::body);
@@ -87,7 +99,6 @@ void start_parts(Domain<D>& domain) {
     else if (p == 0 || domain.grid.patches[p - 1].body != body)
       add_part_as_one<D>(domain, p, {own.begin(), own.end()});
   }
-  given = {};
   surfaces.places.resize(surfaces.points.size());
   surfaces.place_on_hosts.assign(surfaces.hosts.size(), 0);
   surfaces.place_of_motion.assign(surfaces.hosts.size(), 0);

@@ -6,6 +6,7 @@
 namespace mpm {
 
 /// The contact points that were given, with their hosts, once lists are made; and their places.
+/// These are sorted.
 template <int D>
 void start_parts(Domain<D>& domain);
 

@@ -4,6 +4,7 @@
 //   parts.hpp           where they are, x_c = x_p + F_p d
 //   near_points.hpp     which may feel each other: lists
 //   overlaps.hpp        which overlap a face of the box or another body, and how deep (felt.hpp)
+//   bonds.hpp           what is bonded pulls
 //   press.hpp           springs of an energy, and Coulomb friction that remembers (law.hpp)
 //   touch_surfaces.cpp  what comes to the hosts, and from these to their nodes in the next step
 #include <algorithm>
@@ -26,6 +27,7 @@ struct GivenPoint {
   std::uint32_t particle = 0;  // number of its host in the body
   Vec<double, D> offset;       // from the host to the point, in the body at the start [m]
   double area = 0.0;           // of its share of the surface [m^2; in 2D m times 1 m]
+  std::uint32_t number = 0;    // as it was given, while bonds are made
 };
 
 /// A particle that carries contact points. What acts on these acts on its nodes.
@@ -138,6 +140,15 @@ struct HostMotion {
   }
 };
 
+/// A contact point that is held to a place of another body (bonds.hpp).
+template <int D>
+struct Bond {
+  std::uint32_t first = 0, second = 0;  // the point; that of the place
+  int from = 0, body = 0;               // whose they are
+  double stiffness = 0.0;               // [N/m]
+  Vec<double, D> pull;                  // on the first, after the last step [N]
+};
+
 /// What passes between two bodies in the coming step.
 template <int D>
 struct ActingBetween {
@@ -206,7 +217,8 @@ struct DeepestPoint {
 
 template <int D>
 struct Surfaces {
-  std::vector<GivenPoint<D>> given;  // until the bodies have rows
+  std::vector<GivenPoint<D>> given;     // until the bodies have rows
+  std::vector<std::uint32_t> given_of;  // of each point its place among these; as long
   double spacing = 0.0;  // e: the points of all bodies lie half of it behind their surfaces [m]
   double onset = 0.0;    // way over which springs begin, that of a step at the start [m]
   bool meet = false;     // do bodies touch each other by them?
@@ -217,6 +229,7 @@ struct Surfaces {
   std::vector<ContactPoint<D>> points;          // by host
   std::vector<Vec<double, D>> places;           // of the points, after the last step [m]
   std::vector<KeptOfContact<double>> set_back;  // by how much they overlapped at the start [m]
+  std::vector<Bond<D>> bonds;                   // by their first points
 
   std::vector<Vec<double, D>> places_of_lists;  // where points were when NearPoints were found
   double age_of_lists = 0.0;                    // for how long it is [s]

@@ -3,6 +3,7 @@
 #include "mpm/step/stage_functions.hpp"
 #include "mpm/surfaces/as_one.hpp"
 #include "mpm/surfaces/between.hpp"
+#include "mpm/surfaces/bonds.hpp"
 #include "mpm/surfaces/host_motion.hpp"
 #include "mpm/surfaces/near_points.hpp"
 #include "mpm/surfaces/overlaps.hpp"
@@ -96,6 +97,11 @@ void give_to_hosts(Domain<D>& domain) {
       }
     }
   }
+  for (const Bond<D>& bond : surfaces.bonds) {
+    surfaces.stored_push += 0.5 * dot(bond.pull, bond.pull) / bond.stiffness;
+    acting.push(bond.first, bond.pull);
+    acting.push(bond.second, -1.0 * bond.pull);
+  }
   surfaces.touching_max = std::max(surfaces.touching_max, surfaces.touching);
   acting.sort();
 }
@@ -132,6 +138,7 @@ void touch_surfaces(Domain<D>& domain) {
   if (surfaces.meet) find_near_points(domain);
   domain.threads.for_each(surfaces.parts.size(),
                           [&](std::size_t k) { find_overlaps(domain, surfaces.parts[k]); });
+  pull_bonds(domain);
   find_motions(domain);
   domain.threads.for_each(surfaces.parts.size(),
                           [&](std::size_t k) { press_part(domain, surfaces.parts[k]); });

@@ -74,14 +74,10 @@ def _of_body(case: Case, name: str) -> Iterator[tuple[str, str]]:
             "neighbours there"
         )
         yield rule, updated
-    if material.volume_averaging:
-        yield "does not go with volume_averaging of its material", f"{updated}, or leave that out"
     moves = any(part.velocity) or any(part.angular_velocity)
     if case.run.settle is not None and moves:
         rule = "does not go with run.settle yet where the body has a velocity at the start"
         yield rule, updated
-    if any(load.body == name for load in case.load.values()):
-        yield "does not go with loads on its surface yet", updated
 
 
 def _of_contact(case: Case) -> Iterator[str]:
@@ -102,12 +98,9 @@ def _of_case(case: Case, name: str) -> Iterator[tuple[str, str]]:
     if case.grid.basis == "linear":
         yield "needs gradients without jumps", 'give grid.basis = "quadratic_bspline"'
     others = [one for one in case.parts() if not case.is_rigid(one) and one not in in_body(case)]
-    if case.contact_enabled and others:
+    if case.contact.enabled and others:
         rule = f"does not go with contact with {others[0]}, which has another, yet"
         yield rule, f'give all frame = "{MATERIAL}", contact.enabled = false, or {updated[5:]}'
-    bonded = case.contact.bonded or any(pair.bonded for pair in case.contact.pair)
-    if bonded and case.body_count > 1:
-        yield "does not go with bonded bodies yet", updated
     if case.contact_enabled:
         yield from ((rule, f"leave it out, or {updated}") for rule in _of_contact(case))
     if "absorbing" in case.grid.walls:

@@ -39,7 +39,8 @@ class Material(CaseModel):
             same keys; both 0 for none. A gas and an explosive have it where neither is given.
         volume_averaging: whether all particles of a body in a cell take the mean of the changes of
             their volumes, and the nodes the mean of their pressures, so that nearly incompressible
-            matter, also that which flows plastically, does not lock (Coombs et al. 2018).
+            matter, also that which flows plastically, does not lock (Coombs et al. 2018). With
+            `frame = "material"` nodes get the pressure that they can tell, without its noise.
         damping: in proportion to the stiffness; None for none.
     """
 

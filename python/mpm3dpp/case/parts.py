@@ -140,7 +140,7 @@ class ContactPair(CaseModel):
         restitution: speed of parting over that of approach; without one that of `contact`.
         interference: what becomes of what is drawn into each other, as in `contact`.
         bonded: they stick together wherever they meet, as one body of two materials; then without
-            friction.
+            friction. With `frame = "material"` what touches at the start is held by springs.
     """
 
     bodies: list[Text] | None = None

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from mpm3dpp import _core
+from mpm3dpp.base.frames import MATERIAL
 from mpm3dpp.case.case import Case
 
 
@@ -15,7 +16,7 @@ def bond_notes(case: Case) -> list[str]:
         if not pair.bonded or not case.contact_enabled:
             continue
         names = pair.bodies or [n for n, p in parts.items() if p.material in (pair.materials or [])]
-        for soft in (name for name in names if not case.is_rigid(name)):
+        for soft in (name for name in names if not _holds(case, name)):
             held = found.setdefault(soft, [])
             held += [name for name in names if case.is_rigid(name) and name not in held]
     affine = _core.transfers[case.run.transfer.word]["affine"]
@@ -34,6 +35,11 @@ def bond_notes(case: Case) -> list[str]:
         for soft, rigid in found.items()
         if rigid
     ]
+
+
+def _holds(case: Case, name: str) -> bool:
+    """Return whether what is bonded to it holds, or it is no body that deforms."""
+    return case.is_rigid(name) or case.parts()[name].frame == MATERIAL
 
 
 def _is_driven(case: Case, name: str) -> bool:

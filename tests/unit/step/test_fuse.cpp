@@ -47,7 +47,7 @@ void check_fused(mpm::testing::Report& report) {
       CHECK(stages_of<D>(scheme, fused, Extra::release).size() >= plain + 2);
       // So do those of bodies on nodes of their own.
       CHECK_EQUAL(place<D>(scheme, fused, "update in the body"), plain);
-      CHECK_EQUAL(stages_of<D>(scheme, fused, Extra::none, true).size(), plain + 6);
+      CHECK_EQUAL(stages_of<D>(scheme, fused, Extra::none, true).size(), plain + 7);
     }
   // A stage of a list is found by its name and what it reads.
   for (const auto* lists : {&Schemes<D>::plain, &Schemes<D>::fused})

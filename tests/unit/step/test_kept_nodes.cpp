@@ -5,6 +5,7 @@
 #include "check.hpp"
 #include "mpm/reference/kept_nodes.hpp"
 #include "mpm/run/bodies.hpp"
+#include "mpm/run/loads.hpp"
 #include "mpm/run/measures.hpp"
 #include "mpm/run/prepare.hpp"
 #include "mpm/run/start_in_body.hpp"
@@ -54,24 +55,29 @@ struct Pair {
   reference::KeptNodes<D> other{step};
   std::mt19937_64 random{5};
 
-  explicit Pair(BasisId basis, Scheme scheme)
+  Pair(BasisId basis, Scheme scheme, bool averages)
       : simulation(std::make_unique<Simulation<D>>(settings_of<D>(basis, scheme))) {
     MaterialChoice choice;
     choice.density = density;
     choice.strength = {"elastic", {{"E", E}, {"nu", nu}}};
+    choice.volume_averaging = averages;
     const int material = add_material(*simulation, choice, true);
     add(material);
+    add_a_load("pressure");
+    add_a_load("traction");
     prepare(*simulation);
     Domain<D>& domain = simulation->domain;
     step.h = cell;
     step.dt = dt;
     step.g[1] = -2e4;
     const double edge = simulation->domain.bodies[0].mean_edge / cell;
+    step.half_width = half_width(basis, edge);
     step.S = basis == basis_id<QuadraticBSpline>
                  ? std::function<reference::ShapeValue(double)>(reference::quadratic)
                  : [edge](double d) { return reference::gimp(d, 0.5 * edge); };
     other.body.material = Elastic::of(E, nu, density);
     other.start(velocity_at_node<D>);
+    if (averages) other.average();
     for_each_node([&](const Index<D>& i, NodeBlock<D>& block, int n) {
       for (int a = 0; a < D; ++a)
         block.records[n][velocity_at + a] =
@@ -100,6 +106,31 @@ struct Pair {
     const int body = add_body<D>(*simulation, "body", material, x, std::vector<double>(D, 0.0),
                                  std::array{std::pow(0.5 * cell, D)});
     set_state<D>(*simulation, body, "stress", stress);
+  }
+  /// On some particles, as large as the stress, with a period of some steps.
+  void add_a_load(const std::string& kind) {
+    std::array<TimeFunction, 3> value;
+    for (TimeFunction& f : value) {
+      f = TimeFunction(1e6 * any());
+      f.amplitude = 1e6 * any();
+      f.frequency = 0.2 / dt;
+    }
+    std::vector<std::uint32_t> particles;
+    std::vector<double> areas, sizes, arms;
+    reference::Load<D> load{0, kind == "pressure", {}, {}};
+    std::copy_n(value.begin(), D, load.value.begin());
+    for (std::uint32_t k = 0; k < other.body.particles.size(); k += 3) {
+      reference::Piece<D> piece{k, 0.0, {}, {}};
+      for (int a = 0; a < D; ++a) {
+        areas.push_back(piece.a[a] = any() * std::pow(0.5 * cell, D - 1));
+        arms.push_back(piece.middle[a] = 0.3 * cell * any());
+      }
+      sizes.push_back(piece.size = (1.5 + 0.5 * any()) * norm(piece.a));
+      particles.push_back(k);
+      load.pieces.push_back(piece);
+    }
+    other.loads.push_back(load);
+    mpm::add_load<D>(*simulation, kind, 0, kind, value, {particles, areas, sizes, arms});
   }
   template <class F>
   void for_each_node(F&& f) {
@@ -140,6 +171,8 @@ struct Pair {
       for (int k = 0; k < D * D; ++k)
         CHECK_CLOSE(pool.deformation_part(k)[row], other.F[pool.id[row]][k / D][k % D], 1e-10);
       CHECK_CLOSE(pool.volume()[row] / p.V, 1.0, 1e-10);
+      CHECK_CLOSE(averaged_away(pool, static_cast<std::uint32_t>(row)), other.taken[pool.id[row]],
+                  tolerance * E);
       for (int c = 0; c < Sym<double, D>::size; ++c)
         CHECK_CLOSE(double{pool.stress(c)[row]}, p.sigma.c[c], tolerance * E);
     }
@@ -147,8 +180,8 @@ struct Pair {
 };
 
 template <int D>
-void check_stages(Report& report, BasisId basis, Scheme scheme) {
-  Pair<D> pair(basis, scheme);
+void check_stages(Report& report, BasisId basis, Scheme scheme, bool averages) {
+  Pair<D> pair(basis, scheme, averages);
   Domain<D>& domain = pair.simulation->domain;
   domain.gravity[1] = -2e4;
   for (int k = 0; k < 4; ++k) {
@@ -167,6 +200,7 @@ void check_stages(Report& report, BasisId basis, Scheme scheme) {
       }
       if (stage.name == "exchange forces" || stage.name == "exchange momentum and forces") {
         pair.other.map_forces();
+        pair.other.load_surfaces();
         pair.check_nodes(report, force_at, &reference::Node<D>::f,
                          1e-9 * E * std::pow(cell, D - 1));
       }
@@ -182,10 +216,15 @@ void check_stages(Report& report, BasisId basis, Scheme scheme) {
       }
       if (stage.name == "update in the body") {
         pair.other.update();
+        if (averages) continue;
+        pair.check_particles(report);
+      }
+      if (averages && stage.name == "average pressure in bodies") {
+        pair.other.average();
         pair.check_particles(report);
       }
     }
-    domain.time = domain.time_after;
+    pair.step.t = domain.time = domain.time_after;
     double kinetic = 0.0;
     for (const auto& [i, node] : pair.other.body.nodes)
       kinetic += 0.5 * node.m * dot(node.v, node.v);
@@ -241,8 +280,10 @@ void check_velocities(Report& report, BasisId basis) {
 void test_kept_nodes(Report& report) {
   for (const BasisId basis : {basis_id<QuadraticBSpline>, basis_id<Gimp>}) {
     for (const Scheme scheme : {Scheme::usf, Scheme::usl, Scheme::musl}) {
-      check_stages<2>(report, basis, scheme);
-      check_stages<3>(report, basis, scheme);
+      for (const bool averages : {false, true}) {
+        check_stages<2>(report, basis, scheme, averages);
+        check_stages<3>(report, basis, scheme, averages);
+      }
     }
     check_velocities<2>(report, basis);
     check_velocities<3>(report, basis);

@@ -1,0 +1,140 @@
+#include "mpm/surfaces/bonds.hpp"
+
+#include <ranges>
+#include <span>
+#include <stdexcept>
+
+#include "mpm/surfaces/law.hpp"
+#include "mpm/surfaces/near_points.hpp"
+#include "mpm/surfaces/overlaps.hpp"
+#include "mpm/surfaces/parts.hpp"
+
+namespace mpm {
+namespace {
+
+// Surfaces touch where the gap between them is less than this [spacings]. Beyond the edge of a face
+// the sum of its weights is less than half of that on it: there is none.
+constexpr double widest_gap = 0.25;
+
+// Points within so much of the square of the nearest one's distance are as near: no order chooses.
+constexpr double as_near = 1.0 + 1e-6;
+
+/// A bond before its second point has a number.
+struct Found {
+  std::uint32_t first = 0, nearest = 0;  // points
+  int from = 0, to = 0;                  // bodies
+  double share = 0.0;                    // where several points are as near
+};
+
+template <int D>
+bool shall_be_bonded(const Domain<D>& domain, int a, int b) {
+  return a != b &&
+         law_of(domain.contact_settings, domain.body_at(a).group, domain.body_at(b).group).bonded;
+}
+
+/// What touches where bonded bodies lie at the start, by point and body.
+template <int D>
+std::vector<Found> find_touching(const Domain<D>& domain) {
+  const Surfaces<D>& surfaces = domain.surfaces;
+  std::vector<Found> found;
+  for (const SurfacePart<D>& part : surfaces.parts)
+    for_each_near_surface(domain, part, [&](const NearPoints& near, double height) {
+      if (!shall_be_bonded(domain, part.body, near.body) || height > 1.0 + widest_gap) return;
+      const Vec<double, D> here = surfaces.places[near.point];
+      const auto square_to = [&](std::uint32_t q) {
+        const Vec<double, D> way = surfaces.places[q] - here;
+        return dot(way, way);
+      };
+      const std::span all(part.awake.data() + near.first, near.count);
+      const double nearest = std::ranges::min(all | std::views::transform(square_to));
+      const std::size_t begin = found.size();
+      for (const std::uint32_t q : all)
+        if (square_to(q) <= as_near * nearest)
+          found.push_back({near.point, q, part.body, near.body, 1.0});
+      for (std::size_t k = begin; k < found.size(); ++k)
+        found[k].share = 1.0 / static_cast<double>(found.size() - begin);
+    });
+  return found;
+}
+
+/// Refuse bonds of bodies that touch nowhere.
+template <int D>
+void check_bonds(const Domain<D>& domain, const std::vector<Found>& found) {
+  const auto& bodies = domain.bodies;
+  const auto group = [&](int body) { return domain.body_at(body).group; };
+  const auto refuse = [&](int a, const std::string& b) {
+    throw std::invalid_argument("frame = \"material\" does not go with a bond of " +
+                                domain.body_at(a).name + " to " + b +
+                                ", which it does not touch at the start: bring them together, or "
+                                "give frame = \"updated\"");
+  };
+  for (std::size_t a = 0; a < bodies.size(); ++a) {
+    const int one = static_cast<int>(a);
+    bool alone = true;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const int other = static_cast<int>(b);
+      if (!shall_be_bonded(domain, one, other)) continue;
+      const bool touch = std::ranges::any_of(found, [&](const Found& bond) {
+        return group(bond.from) == group(one) && group(bond.to) == group(other);
+      });
+      alone = alone && !touch;
+      if (!touch && !domain.contact_settings.bonded && one < other) refuse(one, bodies[b].name);
+    }
+    if (alone && domain.contact_settings.bonded && bodies.size() > 1) refuse(one, "any other");
+  }
+}
+
+}  // namespace
+
+template <int D>
+void add_bonds(Domain<D>& domain) {
+  Surfaces<D>& surfaces = domain.surfaces;
+  find_near_points(domain);
+  const std::vector<Found> found = find_touching(domain);
+  check_bonds(domain, found);
+  const std::size_t count = surfaces.given.size();
+  for (std::uint32_t k = 0; k < count; ++k) surfaces.given[k].number = k;
+  std::vector<std::uint32_t> first;  // of each bond the number of its first point as it was given
+  for (const Found& bond : found) {
+    GivenPoint<D> place = surfaces.given[surfaces.given_of[bond.nearest]];
+    place.offset += surfaces.places[bond.first] - surfaces.places[bond.nearest];
+    place.area = 0.0;
+    place.number = static_cast<std::uint32_t>(count + first.size());
+    first.push_back(surfaces.given_of[bond.first]);
+    surfaces.given.push_back(place);
+  }
+  start_parts(domain);
+  surfaces.places_of_lists.clear();
+  std::vector<std::uint32_t> point_of(surfaces.given.size());
+  for (std::uint32_t c = 0; c < surfaces.points.size(); ++c)
+    point_of[surfaces.given[surfaces.given_of[c]].number] = c;
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const auto compliance = [&](int body) { return 1.0 / domain.body_at(body).stiffness; };
+    Bond<D> bond;
+    bond.first = point_of[first[k]];
+    bond.second = point_of[count + k];
+    bond.from = found[k].from;
+    bond.body = found[k].to;
+    bond.stiffness =
+        found[k].share * stiffness_of_point(surfaces.points[bond.first].area, domain.grid.cell_size,
+                                            compliance(bond.from), compliance(bond.body));
+    surfaces.bonds.push_back(bond);
+  }
+  std::ranges::stable_sort(surfaces.bonds, {}, &Bond<D>::first);
+}
+
+template <int D>
+void pull_bonds(Domain<D>& domain) {
+  Surfaces<D>& surfaces = domain.surfaces;
+  domain.threads.for_each(surfaces.bonds.size(), [&](std::size_t k) {
+    Bond<D>& bond = surfaces.bonds[k];
+    bond.pull = bond.stiffness * (surfaces.places[bond.second] - surfaces.places[bond.first]);
+  });
+}
+
+template void add_bonds<2>(Domain<2>&);
+template void add_bonds<3>(Domain<3>&);
+template void pull_bonds<2>(Domain<2>&);
+template void pull_bonds<3>(Domain<3>&);
+
+}  // namespace mpm
