@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The same bits of a case with any number of threads, stages fused or not, and after a restart."""
+"""The same bits of a case with any number of threads and ranks, fused or not, after a restart."""
 
 from __future__ import annotations
 
@@ -22,6 +22,19 @@ def check_same_bits(case: Case, folder: Path) -> None:
     again.restore(folder / "state.zip")
     assert _state(first) == one
     assert one == _state(again)
+    assert one == _state(Simulation(case, threads=1, ranks=3))
+    # From one rank to several, and from these to others.
+    parts = Simulation(case, threads=1, ranks=2)
+    parts.restore(folder / "state.zip")
+    parts.advance(10)
+    parts.save(folder / "parts.zip")
+    assert one == _state(parts)
+    others = Simulation(case, threads=1, ranks=3)
+    others.restore(folder / "parts.zip")
+    assert one == _state(others)
+    alone = Simulation(case, threads=2)
+    alone.restore(folder / "parts.zip")
+    assert one == _state(alone)
 
 
 def _state(simulation: Simulation) -> list[bytes]:

@@ -28,6 +28,8 @@ LAYERS = {
     "walls/walls.hpp": 3,
     "walls/face_impulses.hpp": 3,
     "grid": 4,
+    "surfaces/hosts.hpp": 4,
+    "surfaces/other_ranks.hpp": 4,
     "surfaces/surfaces.hpp": 4,
     "particles": 5,
     "schedule": 6,

@@ -79,6 +79,7 @@ struct Domain {
   std::vector<Damping> dampings;           // of bodies' motion
   std::vector<Vec<double, D>> load_parts;  // scratch: force by patch and load [N]
   std::vector<KeptSpin> kept_spins;        // of bodies on nodes of their own, by body
+  std::vector<SharedBody> shared_bodies;   // of these, by body
   std::vector<RigidMotion> rigid;          // one per entry of rigid_bodies
   std::vector<RigidMotion> rigid_before;
   std::vector<RigidSums> rigid_parts, rigid_sums;  // scratch: per patch, per rigid body

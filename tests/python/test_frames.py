@@ -12,8 +12,6 @@ import pytest
 from mpm3dpp import Case, CaseError, Simulation
 from mpm3dpp.fill.advisories import notes
 from mpm3dpp.fill.build import build
-from mpm3dpp.run.summary import echo
-from mpm3dpp.shapes.contact_points import points_of_shape
 
 CASE = """
 [grid]
@@ -87,7 +85,6 @@ def test_what_they_do_not_go_with(before: str, after: str, said: str) -> None:
         ('gap_distance = "1 um"', "contact.gap_distance"),
         ('response = "impulses"', "contact.response"),
         ('interference = "pressed"', 'contact.interference = "pressed"'),
-        ("[[contact.pair]]\nbodies = ['a', 'b']\nbonded = true", "bonded bodies yet"),
     ],
 )
 def test_what_is_for_contact_at_nodes_is_not_for_them(given: str, said: str) -> None:
@@ -226,40 +223,3 @@ def test_grains_of_such_bodies() -> None:
     arm -= arm.mean(axis=0)
     turned = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
     assert np.abs(moving - 100.0 * turned).max() < 0.02 * 0.3
-
-
-def test_ranks_are_refused_in_a_sentence() -> None:
-    with pytest.raises(CaseError, match=r'frame = "material" does not go with several ranks yet'):
-        simulation_of(ranks=2)
-
-
-def test_check_says_whose_nodes_lie_in_it() -> None:
-    case = Case.from_text(CASE)
-    about = {line.split(":")[0]: line for line in echo(case, build(case)).splitlines()}
-    assert about["body a"].endswith(", on nodes of its own")
-    assert "nodes" not in about["body b"]
-
-
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_contact_points_lie_behind_all_faces(dimension: int) -> None:
-    """At an edge one point stands for both faces, as deep behind each: both have all their area."""
-    side, spacing, depth = 4.0, 0.25 if dimension == 3 else 0.125, 0.125
-    tables = {"box": {"lower": [0.0] * dimension, "upper": [side] * dimension}}
-    grid = {"dimension": dimension, "cell_size": 1.0}
-    matter = {"density": 1.0, "strength": {"elastic": {"E": 1.0, "nu": 0.3}}}
-    case = Case.model_validate(
-        {
-            "grid": grid,
-            "run": {"end_time": 1.0},
-            "material": {"m": matter},
-            "body": {"b": {"material": "m", "shape": tables}},
-        }
-    )
-    shape = case.body["b"].shape
-    assert shape is not None
-    points = points_of_shape(shape, spacing, depth)
-    behind = np.minimum(points.places, side - points.places)
-    assert behind.min() == pytest.approx(depth)
-    assert behind.min(axis=1).max() == pytest.approx(depth)
-    face = abs(points.places[:, 0] - depth) < 1e-9
-    assert points.areas[face].sum() == pytest.approx(side ** (dimension - 1))

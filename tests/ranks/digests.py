@@ -25,13 +25,14 @@ from mpm3dpp.reproduce.examples import EXAMPLES, load
 
 
 def cases(which: str) -> Iterator[tuple[str, Case]]:
-    """Yield the examples 01 to 05 with their names, and a case that has what these do not."""
+    """Yield the examples 01 to 05 with their names, and cases that have what these do not."""
     folder = shipped("examples")
     for name, example in EXAMPLES.items() if which == "all" else ():
         for label in example.files:
             yield f"{name} {label}", load(example, label, folder, "quick")[0]
     yield "hopper", load_case(folder / "05_hopper" / "case_small.toml")
-    yield "slices", load_case(Path(__file__).parent / "slices.toml")
+    for name in ("slices", "slices_in_body"):
+        yield name, load_case(Path(__file__).parent / f"{name}.toml")
 
 
 def digest(simulation: Simulation) -> str:

@@ -82,7 +82,7 @@ def check_examples(
     subprocess.run(words, env=environment(through), check=True, timeout=600)
     found = json.loads(out.read_text())
     assert found.pop("ranks") == str(ranks)
-    assert len(found) == (7 if which == "all" else 2)
+    assert len(found) == (8 if which == "all" else 3)
     assert found == {name: alone[name] for name in found}
 
 

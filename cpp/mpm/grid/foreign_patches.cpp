@@ -50,6 +50,7 @@ void merge(TileGrid<D>& grid) {
       patch.body = told->body;
       patch.tile = told->tile;
       patch.foreign = true;
+      patch.keeps = told->keeps;
     }
   };
   for (const Patch<D>& patch : before) {
@@ -70,8 +71,8 @@ bool exchange_patches(TileGrid<D>& grid) {
   for (Patch<D>& patch : grid.patches) {
     if (patch.foreign || partition.leaves(patch) || patch.occupied == 0) continue;
     for (const int rank : readers_of(partition, patch))
-      write(letter_to(mail, rank),
-            ForeignPatch<D>{patch.body, patch.tile, patch.occupied, partition.comm->rank()});
+      write(letter_to(mail, rank), ForeignPatch<D>{patch.body, patch.tile, patch.occupied,
+                                                   partition.comm->rank(), patch.keeps});
   }
   partition.comm->exchange(mail);
   partition.told.clear();

@@ -98,6 +98,14 @@ auto springs_of(TileGrid<D>& grid) {
   return Numbers<decltype(begin_of)>{wall_record, wall_record, begin_of};
 }
 
+template <int D>
+auto kept_of(TileGrid<D>& grid, int number) {
+  const auto begin_of = [&grid, number](const Patch<D>& p) {
+    return p.keeps ? grid.block(p).displacements.data + number : nullptr;
+  };
+  return Numbers<decltype(begin_of)>{1, half_record, begin_of};
+}
+
 /// f(first number) of the nodes of runs.
 template <int D, class Begin, class F>
 void for_each_node(TileGrid<D>& grid, const std::vector<NodeRun>& runs, const Numbers<Begin>& what,
@@ -214,6 +222,23 @@ void finish_nodes(TileGrid<D>& grid, int first, int last) {
 }
 
 template <int D>
+void exchange_and_sum(TileGrid<D>& grid, Threads& threads, int first, int last) {
+  if (!grid.partition.alone()) {
+    start_nodes(grid, first, last);
+    finish_nodes(grid, first, last);
+  }
+  sum_shared_nodes(grid, threads, first, last);
+}
+template <int D>
+void exchange_and_sum_kept(TileGrid<D>& grid, Threads& threads, int number) {
+  if (!grid.partition.alone()) {
+    start(grid, grid.partition.mail.kept, kept_of(grid, number));
+    finish(grid, grid.partition.mail.kept, kept_of(grid, number));
+  }
+  sum_kept_number(grid, threads, number);
+}
+
+template <int D>
 void start_at_walls(TileGrid<D>& grid) {
   if (grid.has_dashpots) start(grid, grid.partition.mail.dashpots, dashpots_of(grid));
   if (grid.has_wall_springs) start(grid, grid.partition.mail.springs, springs_of(grid));
@@ -230,6 +255,10 @@ template void start_nodes<2>(TileGrid<2>&, int, int);
 template void start_nodes<3>(TileGrid<3>&, int, int);
 template void finish_nodes<2>(TileGrid<2>&, int, int);
 template void finish_nodes<3>(TileGrid<3>&, int, int);
+template void exchange_and_sum<2>(TileGrid<2>&, Threads&, int, int);
+template void exchange_and_sum<3>(TileGrid<3>&, Threads&, int, int);
+template void exchange_and_sum_kept<2>(TileGrid<2>&, Threads&, int);
+template void exchange_and_sum_kept<3>(TileGrid<3>&, Threads&, int);
 template void start_at_walls<2>(TileGrid<2>&);
 template void start_at_walls<3>(TileGrid<3>&);
 template void finish_at_walls<2>(TileGrid<2>&);

@@ -31,11 +31,12 @@ struct ForeignPatch {
   Index<D> tile;
   std::uint64_t occupied;
   int rank;
+  bool keeps;
 };
 
 /// Kinds of letters, each with its own mail.
 struct PartitionMail {
-  Mail migrants, patches, nodes, dashpots, springs;
+  Mail migrants, patches, nodes, dashpots, springs, kept;
 };
 
 /// Which patches a stage goes through: those first of which others read nodes, and foreign ones;

@@ -46,7 +46,7 @@ std::size_t note_cells(const TileGrid<D>& grid, const ParticlePool<D>& pool, con
     std::uint8_t* to = marks + (begin - patch.begin);
     for_each_lanes<W>(pool.order.data() + begin, end - begin, [&](const auto& rows) {
       Vec<Batch<W>, D> x;
-      for (int a = 0; a < D; ++a) x[a] = load(pool.x(a), rows);
+      for (int a = 0; a < D; ++a) x[a] = load(pool.listed(a), rows);
       const Batch<W> now = cells_in_tile<D>(coordinates, first, x), old(old_cell);
       for (int k = 0; k < rows.count; ++k) *to++ = static_cast<std::uint8_t>(now[k]);
       // Empty lanes repeat a particle, which must not count twice.

@@ -108,7 +108,7 @@ void exchange_migrants(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       take_rows(pool, head.count, rows);
       read_group<D>(reader, pool, rows);
       for (const std::uint32_t row : rows) {
-        const auto [tile, cell] = grid.tile_and_cell(pool.position_of(row));
+        const auto [tile, cell] = grid.tile_and_cell(listed_place(pool, row));
         const int patch = find_patch<D>(grid, head.body, tile);
         scratch.migrants.push_back({head.body, tile, patch, row, static_cast<std::uint8_t>(cell)});
       }

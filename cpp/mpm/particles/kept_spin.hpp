@@ -21,6 +21,13 @@ struct KeptSpin {
   double mass = 0.0, excess = 0.0;     // of the body [kg]; D [kg m^2]
 };
 
+/// One that other ranks have a part of.
+struct SharedBody {
+  std::int32_t spin = 0;      // of all KeptSpin
+  bool first = false;         // does this rank have the first of its tiles?
+  std::vector<int> others{};  // ranks
+};
+
 /// The kinetic energy that nodes have more than their bodies [J].
 inline double kinetic_excess(const std::vector<KeptSpin>& all) {
   double sum = 0.0;

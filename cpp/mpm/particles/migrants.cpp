@@ -47,7 +47,7 @@ void find_migrants(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     Migrant<D>* to = &scratch.migrants[scratch.notes[p].first_migrant];
     for (const std::uint32_t row : pools[m].rows(patch)) {
       if (*mark++ != CellMark::outside) continue;
-      const auto [tile, cell] = grid.tile_and_cell(pools[m].position_of(row));
+      const auto [tile, cell] = grid.tile_and_cell(listed_place(pools[m], row));
       *to++ = {patch.body, tile, patch_beside<D>(grid, patch, tile), row,
                static_cast<std::uint8_t>(cell)};
     }

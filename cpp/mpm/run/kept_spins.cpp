@@ -1,7 +1,13 @@
 #include "mpm/run/kept_spins.hpp"
 
+#include <array>
+#include <map>
+#include <optional>
+
 #include "mpm/math/eigen.hpp"
+#include "mpm/run/gather.hpp"
 #include "mpm/run/part_sums.hpp"
+#include "mpm/step/sum_over_bodies.hpp"
 #include "mpm/surfaces/restitution.hpp"
 
 namespace mpm {
@@ -38,8 +44,12 @@ bool is_held(const Domain<D>& domain, int body) {
 template <int D>
 void list_kept_spins(Domain<D>& domain) {
   const std::vector<PartSums> parts = sums_of_bodies(domain, SumsOf::particles);
+  std::vector<std::int64_t> held(parts.size());
+  for (std::size_t b = 0; b < held.size(); ++b)
+    held[b] = domain.bodies[b].keeps_nodes() && is_held(domain, static_cast<int>(b));
+  domain.grid.partition.comm->all_sum(held);
   for (std::size_t b = 0; b < parts.size(); ++b) {
-    if (!domain.bodies[b].keeps_nodes() || is_held(domain, static_cast<int>(b))) continue;
+    if (!domain.bodies[b].keeps_nodes() || held[b] > 0) continue;
     KeptSpin turning;
     turning.body = static_cast<int>(b);
     turning.mass = parts[b].mass;
@@ -50,6 +60,51 @@ void list_kept_spins(Domain<D>& domain) {
     // Restitution asks how all of them move.
     if (turns || restitution_takes(domain.contact_settings)) domain.kept_spins.push_back(turning);
   }
+  find_shared_bodies(domain);
+}
+
+template <int D>
+void find_shared_bodies(Domain<D>& domain) {
+  Comm& comm = *domain.grid.partition.comm;
+  domain.shared_bodies.clear();
+  if (comm.alone()) return;
+  Mail mail;
+  for (int rank = 0; rank < comm.size(); ++rank)
+    if (rank != comm.rank()) mail.out.push_back({rank, {}});
+  std::vector<std::optional<Index<D>>> first(domain.kept_spins.size());  // tiles here
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    for (const Patch<D>& patch : patches_of<D>(domain.grid.patches, domain.kept_spins[k].body))
+      if (!patch.foreign && !first[k]) first[k] = patch.tile;
+    if (!first[k]) continue;
+    for (Letter& letter : mail.out) {
+      write(letter, static_cast<std::int32_t>(k));
+      write(letter, *first[k]);
+    }
+  }
+  comm.exchange(mail);
+  std::map<std::int32_t, SharedBody> shared;
+  for (const Letter& letter : mail.in)
+    for (Reader reader(letter); !reader.done();) {
+      const auto k = reader.template read<std::int32_t>();
+      const auto tile = reader.template read<Index<D>>();
+      const std::optional<Index<D>>& own = first[static_cast<std::size_t>(k)];
+      if (!own) continue;
+      SharedBody& body = shared.try_emplace(k, SharedBody{k, true, {}}).first->second;
+      body.first = body.first && tile_less<D>(*own, tile);
+      body.others.push_back(letter.rank);
+    }
+  for (auto& [k, body] : shared) domain.shared_bodies.push_back(std::move(body));
+}
+
+template <int D>
+std::vector<KeptSpin> gather_kept_spins(const Domain<D>& domain) {
+  std::vector<KeptSpin> all = domain.kept_spins;
+  gather(*domain.grid.partition.comm, Slices(all.size()), 1, std::array{0}, std::span(all),
+         [&](auto&& f) {
+           for (std::size_t k = 0; k < all.size(); ++k)
+             if (has_first(domain, k)) f(k, 0, domain.kept_spins[k]);
+         });
+  return all;
 }
 
 template <int D>
@@ -69,6 +124,10 @@ void find_kept_spins(Domain<D>& domain) {
 
 template void list_kept_spins<2>(Domain<2>&);
 template void list_kept_spins<3>(Domain<3>&);
+template void find_shared_bodies<2>(Domain<2>&);
+template void find_shared_bodies<3>(Domain<3>&);
+template std::vector<KeptSpin> gather_kept_spins<2>(const Domain<2>&);
+template std::vector<KeptSpin> gather_kept_spins<3>(const Domain<3>&);
 template void find_kept_spins<2>(Domain<2>&);
 template void find_kept_spins<3>(Domain<3>&);
 

@@ -98,9 +98,9 @@ std::size_t bytes_of_surfaces(const Surfaces<D>& surfaces) {
     parts += size(part.touches) + size(part.slips) + size(part.new_slips) + size(part.near_of) +
              size(part.awake_of) + size(part.awake) + size(part.near) + size(part.felt);
   return parts + size(surfaces.part_of) + size(surfaces.hosts) + size(surfaces.points) +
-         size(surfaces.places) + size(surfaces.set_back) + size(surfaces.places_of_lists) +
-         size(surfaces.motions) + size(surfaces.place_of_motion) + size(surfaces.between) +
-         size(surfaces.on_hosts) + size(surfaces.place_on_hosts);
+         size(surfaces.places) + size(surfaces.others.places_at_start) + size(surfaces.set_back) +
+         size(surfaces.places_of_lists) + size(surfaces.motions) + size(surfaces.place_of_motion) +
+         size(surfaces.between) + size(surfaces.on_hosts) + size(surfaces.place_on_hosts);
 }
 
 }  // namespace
@@ -132,8 +132,8 @@ ContactSummary contact_summary(const Simulation<D>& simulation) {
   };
   ContactSummary told;
   told.overlapped = contact.counts.overlapped;
-  told.touching = all(simulation.domain.surfaces.touching);
-  told.touching_max = all(simulation.domain.surfaces.touching_max);
+  told.touching = simulation.domain.surfaces.touching;
+  told.touching_max = simulation.domain.surfaces.touching_max;
   told.overlapped_max = contact.counts.overlapped_max;
   told.bodies_max = contact.counts.bodies_max;
   told.unconverged = all(contact.unconverged.load());

@@ -5,6 +5,7 @@
 #include "mpm/grid/blocks.hpp"
 #include "mpm/run/check_restored.hpp"
 #include "mpm/run/held_bodies.hpp"
+#include "mpm/run/save_kept_nodes.hpp"
 #include "mpm/run/surfaces.hpp"
 #include "mpm/run/time_step.hpp"
 
@@ -44,19 +45,6 @@ void exchange_removed(StateStream& stream, Removed& removed) {
     removed.count = stream.comm().rank() == 0 ? static_cast<std::size_t>(count) : 0;
 }
 
-/// What nodes in bodies keep. Their patches and blocks follow from the places of the particles in
-/// their bodies, which never change.
-template <int D>
-void exchange_kept_nodes(Domain<D>& domain, StateStream& stream) {
-  NodeMemory& kept = domain.grid.kept;
-  stream.same(kept.needed, other_case);
-  const std::span<double> numbers(kept.numbers.data(), kept.needed);
-  stream.array(numbers);
-  if (!stream.restores()) return;
-  stream.check_all(std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }),
-                   "its nodes are damaged");
-}
-
 /// The lists anew, from where particles are: none depends on those that there were.
 template <int D>
 void rebuild(Domain<D>& domain, std::vector<Patch<D>> bodies, const StateStream& stream) {
@@ -70,7 +58,11 @@ void rebuild(Domain<D>& domain, std::vector<Patch<D>> bodies, const StateStream&
                        "its particles are damaged");
   domain.grid.patches = std::move(bodies);
   release_nodes(domain.grid);
-  build_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);
+  // Nodes that lie in bodies, and their surfaces, stay with who has them.
+  std::optional<Owners<D>> owners;
+  if (has_kept_nodes(domain)) owners = domain.grid.partition.owners;
+  build_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch,
+                   std::move(owners));
   // What has failed in the last step, or is in another cell, is seen to in the next.
   for (Patch<D>& patch : domain.grid.patches) patch.left_cell = !patch.foreign && !patch.keeps;
   if (domain.has_contact())
@@ -103,11 +95,12 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
   for (SurfaceLoad<D>& load : domain.loads) stream(load.mean, load.force, load.impulse);
   if (stream.restores()) rebuild(domain, std::move(bodies), stream);
   exchange_kept_nodes(domain, stream);
-  stream.array(std::span(domain.kept_spins));
+  exchange_kept_spins(domain, stream);
   exchange_surfaces(domain, stream);
   if (domain.surfaces.meet) {
     domain.contact.records.exchange(stream);
-    if (stream.restores()) domain.contact.records.check_restored(domain.bodies.size(), true);
+    if (stream.restores())
+      domain.contact.records.check_restored(domain.bodies.size(), stream.comm().rank() == 0);
   }
   if (domain.has_contact())
     exchange_contact(domain.contact, stream, domain.bodies.size(), domain.grid.partition);

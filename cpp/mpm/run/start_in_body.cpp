@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "mpm/grid/shared_nodes.hpp"
+#include "mpm/grid/halo.hpp"
 #include "mpm/run/kept_spins.hpp"
 #include "mpm/run/part_sums.hpp"
 #include "mpm/schedule/choose.hpp"
@@ -90,7 +90,7 @@ void give_to_nodes(Domain<D>& domain, const std::vector<bool>& bodies) {
         NodeRecords{block.records.data + half_record});
     fold_at_walls(domain.grid, patch, second_halves(block), momentum_at);
   });
-  sum_shared_nodes(domain.grid, domain.threads, half_record, record);
+  exchange_and_sum(domain.grid, domain.threads, half_record, record);
   for_each_meant(domain, bodies, [&](std::size_t p) {
     const NodeBlock<D> given = second_halves(domain.grid.block(p));
     momentum_to_velocity(domain.grid, domain.grid.patches[p], given, velocity_at);
@@ -108,10 +108,12 @@ double add_given(Domain<D>& domain, const std::vector<bool>& bodies) {
       for (int a = 0; a < D; ++a) {
         const double v = block.records[n][given_velocity + a];
         block.records[n][velocity_at + a] += v;
-        largest[p] = std::max(largest[p], std::abs(v));
+        // Of those of other ranks not all that gives to the nodes is known.
+        if (!domain.grid.patches[p].foreign) largest[p] = std::max(largest[p], std::abs(v));
       }
   });
-  return *std::ranges::max_element(largest);
+  const double here = largest.empty() ? 0.0 : *std::ranges::max_element(largest);
+  return all_max(*domain.grid.partition.comm, here);
 }
 
 /// The part of the last increments by which velocities go on from the middle of a step to its end,
@@ -180,7 +182,6 @@ void check_in_body(const Simulation<D>& simulation) {
               "walls of the box that are slip or fixed and a restitution yet: leave one out");
   check_frame(!s.grid.outflow, "a region that particles leave: give frame = \"updated\"");
   check_frame(!s.grid.coarsening, "grid.coarsening: give frame = \"updated\"");
-  check_frame(domain.grid.partition.comm->size() == 1, "several ranks yet: run it on one");
   for (const HeldBody& held_body : simulation.held)
     check_frame(!domain.body_at(held_body.body).keeps_nodes(),
                 "a velocity at the start and run.settle yet: leave one of them away");

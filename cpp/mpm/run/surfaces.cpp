@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "mpm/comm/letters.hpp"
 #include "mpm/surfaces/bonds.hpp"
 #include "mpm/surfaces/law.hpp"
 #include "mpm/surfaces/near_points.hpp"
@@ -53,6 +54,7 @@ double onset_of(const Domain<D>& domain) {
   });
   for (const Body<D>& body : domain.bodies)
     if (body.deforms()) wave = std::min(wave, std::sqrt(body.stiffness / body.initial_density));
+  fastest = all_max(*domain.grid.partition.comm, fastest);
   return domain.grid.cell_size * std::min(fastest / wave, most_onset);
 }
 
@@ -89,32 +91,76 @@ bool is_finite(const Vec<double, D>& v) {
   return std::isfinite(dot(v, v));
 }
 
-/// How fast near points have moved against each other limits the step, and is known by the lists:
-/// they are made where they were.
+/// What a part keeps, for the rank that writes it.
 template <int D>
-void exchange_lists(Domain<D>& domain, StateStream& stream) {
-  Surfaces<D>& surfaces = domain.surfaces;
-  if (stream.restores()) surfaces.places_of_lists.resize(surfaces.points.size());
-  stream.array(std::span(surfaces.places_of_lists));
-  stream(surfaces.age_of_lists, surfaces.closing);
-  if (!stream.restores()) return;
-  StateStream::check(std::ranges::all_of(surfaces.places_of_lists, is_finite<D>) &&
-                         std::isfinite(surfaces.age_of_lists) && surfaces.closing >= 0.0 &&
-                         std::isfinite(surfaces.closing),
-                     damaged);
-  std::swap(surfaces.places, surfaces.places_of_lists);
-  make_near_lists(domain);
-  std::swap(surfaces.places, surfaces.places_of_lists);
+void write_part(Letter& letter, std::size_t number, const SurfacePart<D>& part) {
+  write(letter, number);
+  write(letter, part.of_faces);
+  write(letter, part.moment_of_faces);
+  write(letter, part.at_faces);
+  write(letter, part.slips.size());
+  write_all<KeptOfContact<Vec<double, D>>>(letter, part.slips);
+}
+template <int D>
+void read_part(Reader& reader, Surfaces<D>& surfaces) {
+  SurfacePart<D>& part = surfaces.parts[reader.read<std::size_t>()];
+  part.of_faces = reader.read<FaceImpulses<D>>();
+  part.moment_of_faces = reader.read<Vector3>();
+  part.at_faces = reader.read<bool>();
+  part.slips.resize(reader.read<std::size_t>());
+  for (auto& slip : part.slips) slip = reader.read<KeptOfContact<Vec<double, D>>>();
 }
 
-}  // namespace
-
+/// The state of the surfaces of all ranks, to the first.
 template <int D>
-void exchange_surfaces(Domain<D>& domain, StateStream& stream) {
+Surfaces<D> gather_surfaces(const Domain<D>& domain) {
+  Comm& comm = *domain.grid.partition.comm;
+  Surfaces<D> all = domain.surfaces;
+  if (comm.alone()) return all;
+  Mail mail;
+  if (comm.rank() > 0) {
+    Letter& letter = letter_to(mail, 0);
+    write(letter, all.set_back.size());
+    write_all<KeptOfContact<double>>(letter, all.set_back);
+    write(letter, all.on_hosts.size());
+    write_all<ActingOnHost<D>>(letter, all.on_hosts);
+    for (std::size_t k = 0; k < all.parts.size(); ++k)
+      if (!all.parts[k].foreign) write_part(letter, k, all.parts[k]);
+  }
+  comm.exchange(mail);
+  for (const Letter& letter : mail.in) {
+    Reader reader(letter);
+    for (std::size_t left = reader.read<std::size_t>(); left > 0; --left)
+      all.set_back.push_back(reader.read<KeptOfContact<double>>());
+    for (std::size_t left = reader.read<std::size_t>(); left > 0; --left)
+      all.on_hosts.push_back(reader.read<ActingOnHost<D>>());
+    while (!reader.done()) read_part(reader, all);
+  }
+  std::sort(all.set_back.begin(), all.set_back.end());
+  std::ranges::sort(all.on_hosts, {}, &ActingOnHost<D>::host);
+  return all;
+}
+
+/// What was restored of all parts, but for own ones, is left out.
+template <int D>
+void keep_own(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
-  stream.same(surfaces.points.size(), "it was made from another case");
-  if (!surfaces.exist()) return;
-  if (stream.restores()) find_parts(domain);
+  const auto is_foreign = [&](std::uint32_t host) {
+    return surfaces.parts[surfaces.hosts[host].part].foreign;
+  };
+  std::erase_if(surfaces.set_back, [&](const KeptOfContact<double>& one) {
+    return is_foreign(surfaces.points[one.point].host);
+  });
+  std::erase_if(surfaces.on_hosts,
+                [&](const ActingOnHost<D>& one) { return is_foreign(one.host); });
+  std::ranges::fill(surfaces.place_on_hosts, 0);
+  for (std::size_t k = 0; k < surfaces.on_hosts.size(); ++k)
+    surfaces.place_on_hosts[surfaces.on_hosts[k].host] = static_cast<std::uint32_t>(k + 1);
+}
+
+/// All of it, as one rank has it.
+template <int D>
+void exchange_state(Surfaces<D>& surfaces, StateStream& stream) {
   exchange_kept(surfaces.set_back, stream, surfaces.points.size(),
                 [](double x) { return std::isfinite(x); });
   for (SurfacePart<D>& part : surfaces.parts) {
@@ -128,18 +174,47 @@ void exchange_surfaces(Domain<D>& domain, StateStream& stream) {
     if (part.as_one)
       stream.array(std::span(surfaces.places).subspan(part.first_point, part.points));
   stream(surfaces.stored_push, surfaces.stored_rub, surfaces.touching, surfaces.touching_max);
-  if (surfaces.meet) exchange_lists(domain, stream);
-  if (!stream.restores()) return;
-  StateStream::check(std::ranges::is_sorted(surfaces.on_hosts, {}, &ActingOnHost<D>::host),
-                     damaged);
-  std::ranges::fill(surfaces.place_on_hosts, 0);
-  for (std::size_t k = 0; k < surfaces.on_hosts.size(); ++k) {
-    const ActingOnHost<D>& on = surfaces.on_hosts[k];
-    StateStream::check(
-        on.host < surfaces.hosts.size() && is_finite(on.push.force) && is_finite(on.rub.force),
-        damaged);
-    surfaces.place_on_hosts[on.host] = static_cast<std::uint32_t>(k + 1);
+  if (stream.restores()) surfaces.places_of_lists.resize(surfaces.points.size());
+  if (surfaces.meet) {
+    stream.array(std::span(surfaces.places_of_lists));
+    stream(surfaces.age_of_lists, surfaces.closing);
   }
+  if (!stream.restores()) return;
+  StateStream::check(std::ranges::all_of(surfaces.places_of_lists, is_finite<D>) &&
+                         std::isfinite(surfaces.age_of_lists) && surfaces.closing >= 0.0 &&
+                         std::isfinite(surfaces.closing),
+                     damaged);
+  StateStream::check(std::ranges::is_sorted(surfaces.on_hosts, {}, &ActingOnHost<D>::host) &&
+                         std::ranges::all_of(surfaces.on_hosts,
+                                             [&](const ActingOnHost<D>& on) {
+                                               return on.host < surfaces.hosts.size() &&
+                                                      is_finite(on.push.force) &&
+                                                      is_finite(on.rub.force);
+                                             }),
+                     damaged);
+}
+
+}  // namespace
+
+template <int D>
+void exchange_surfaces(Domain<D>& domain, StateStream& stream) {
+  Surfaces<D>& surfaces = domain.surfaces;
+  stream.same(surfaces.points.size(), "it was made from another case");
+  if (!surfaces.exist()) return;
+  if (!stream.restores()) {
+    Surfaces<D> all = gather_surfaces(domain);
+    exchange_state(all, stream);
+    return;
+  }
+  find_parts(domain);
+  exchange_state(surfaces, stream);
+  keep_own(domain);
+  if (!surfaces.meet) return;
+  // How fast near points have moved against each other limits the step, and is known by the lists:
+  // they are made where they were.
+  std::swap(surfaces.places, surfaces.places_of_lists);
+  make_near_lists(domain);
+  std::swap(surfaces.places, surfaces.places_of_lists);
 }
 
 template void add_surface<2>(Simulation<2>&, int, const ContactPointsGiven&);

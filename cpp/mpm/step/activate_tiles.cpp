@@ -55,7 +55,8 @@ void mark_leaving(Domain<D>& domain) {
 /// Let ranks have other tiles where the work of one is much more than that of others.
 template <int D>
 void balance_ranks(Domain<D>& domain) {
-  if (domain.grid.partition.alone()) return;
+  // Nodes that lie in bodies stay where they are.
+  if (domain.grid.partition.alone() || has_kept_nodes(domain)) return;
   // Tiles have just been shared out; what contact costs is known after the first step.
   if (domain.step == 0 || (domain.step != 1 && domain.step % domain.balance_every != 0)) return;
   // The normals and gaps at a node take about as long as eight particles.

@@ -10,7 +10,7 @@
 // 1 - b keeps each particle's own volume. Of pressures that vary over cells R takes (k h)^2 / 4.
 #include <cmath>
 
-#include "mpm/grid/shared_nodes.hpp"
+#include "mpm/grid/halo.hpp"
 #include "mpm/schedule/scatter.hpp"
 #include "mpm/step/node_loops.hpp"
 #include "mpm/step/patch_loops.hpp"
@@ -116,7 +116,7 @@ void project_pressure(Domain<D>& domain, bool counts) {
       block.displacements[node][projected_at] = 0.0;
     });
   });
-  sum_kept_number(grid, domain.threads, projected_at);
+  exchange_and_sum_kept(grid, domain.threads, projected_at);
   for_each_averaging(domain, [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);

@@ -7,12 +7,13 @@
 // the fourth order in cells over wavelengths, near surfaces of the second. So a, a setting, takes
 // energy of bodies of a few cells; b, of the nodes with less than a share s of the mass of a whole
 // cell, hardly any.
-#include "mpm/grid/shared_nodes.hpp"
+#include "mpm/grid/halo.hpp"
 #include "mpm/schedule/scatter.hpp"
 #include "mpm/step/kept_nodes.hpp"
 #include "mpm/step/node_loops.hpp"
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stage_functions.hpp"
+#include "mpm/step/sum_over_bodies.hpp"
 
 namespace mpm {
 namespace {
@@ -73,7 +74,7 @@ void map_what_is_seen(Domain<D>& domain) {
     fold_at_walls(grid, patch, grid.block(p), force_at);
   });
   // Those of other bodies have no use yet.
-  sum_shared_nodes(grid, domain.threads, force_at, record);
+  exchange_and_sum(grid, domain.threads, force_at, record);
 }
 
 /// G R v of the nodes of a patch is taken from v, and put where Q* Q v is.
@@ -114,15 +115,19 @@ double kinetic_of_kept(TileGrid<D>& grid, const Patch<D>& patch) {
   return sum;
 }
 
-/// Of the nodes of a body, about a place [N m s].
-template <int D>
-Vector3 angular_momentum_of_kept(TileGrid<D>& grid, const KeptSpin& of) {
+/// Of the nodes of a patch, about a place [N m s].
+struct AngularMomentum {
   Vector3 sum = Vector3::zero();
-  for (const Patch<D>& patch : patches_of<D>(grid.patches, of.body))
-    for_each_kept_node(grid, patch, [&](double m, const Vector3& x, const Vector3& v) {
-      sum += m * cross(x - of.centre, v);
-    });
-  return sum;
+  void add(const AngularMomentum& other) { sum += other.sum; }
+};
+template <int D>
+AngularMomentum angular_momentum_of_kept(TileGrid<D>& grid, const Patch<D>& patch,
+                                         const KeptSpin& of) {
+  AngularMomentum all;
+  for_each_kept_node(grid, patch, [&](double m, const Vector3& x, const Vector3& v) {
+    all.sum += m * cross(x - of.centre, v);
+  });
+  return all;
 }
 
 }  // namespace
@@ -139,10 +144,14 @@ void damp_short_waves(Domain<D>& domain) {
   };
   // Where a body is bent Q* Q takes some of its turning; what is kept of that gives it back.
   const auto leave_out_turning = [&](double sign) {
-    domain.threads.for_each(domain.kept_spins.size(), [&](std::size_t k) {
-      KeptSpin& turning = domain.kept_spins[k];
-      turning.of_nodes -= sign * angular_momentum_of_kept(grid, turning);
-    });
+    sum_over_bodies<AngularMomentum>(
+        domain,
+        [&](std::size_t p, const KeptSpin& turning) {
+          return angular_momentum_of_kept(grid, grid.patches[p], turning);
+        },
+        [&](KeptSpin& turning, const AngularMomentum& all, std::size_t) {
+          turning.of_nodes -= sign * all.sum;
+        });
   };
   count_kinetic(1.0);
   leave_out_turning(1.0);

@@ -2,10 +2,10 @@
 // (particles/kept_spin.hpp): with the angular momentum L of the body, which the moment T of all
 // forces changes, the nodes shall have I (I - D)^-1 L by the end of the step. What they lack of it
 // besides T is given to them as that of forces m_i alpha x r_i about the centre of mass.
-#include "mpm/comm/all_sums.hpp"
 #include "mpm/step/kept_nodes.hpp"
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stage_functions.hpp"
+#include "mpm/step/sum_over_bodies.hpp"
 
 namespace mpm {
 namespace {
@@ -15,10 +15,23 @@ struct TurningSums {
   RigidSums motion;                  // mass, place, momentum, angular momentum, inertia
   Vector3 moment = Vector3::zero();  // of the forces [N m]
   Vector3 force = Vector3::zero();   // [N]
+
+  void add(const TurningSums& other) {
+    const RigidSums& of = other.motion;
+    motion.mass += of.mass;
+    motion.first += of.first;
+    motion.momentum += of.momentum;
+    motion.angular += of.angular;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) motion.inertia[i][j] += of.inertia[i][j];
+    moment += other.moment;
+    force += other.force;
+  }
 };
 
 template <int D>
-void add_nodes(Domain<D>& domain, std::size_t p, const Vector3& about, TurningSums& sums) {
+TurningSums sums_of_nodes(Domain<D>& domain, std::size_t p, const Vector3& about) {
+  TurningSums sums;
   const Patch<D>& patch = domain.grid.patches[p];
   const NodeBlock<D> block = domain.grid.block(p);
   double own[BlockShape<D>::nodes_max];
@@ -60,6 +73,7 @@ void add_nodes(Domain<D>& domain, std::size_t p, const Vector3& about, TurningSu
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       motion.inertia[i][j] += (i == j ? trace : 0.0) - (i <= j ? second[i][j] : second[j][i]);
+  return sums;
 }
 
 /// Forces m (g + alpha x r) to the nodes of a patch, r from a centre.
@@ -130,29 +144,29 @@ Vector3 lacking(const Domain<D>& domain, const Patch<D>& patch, const TurningSum
 
 template <int D>
 void turn_in_body(Domain<D>& domain) {
-  domain.threads.for_each(domain.kept_spins.size(), [&](std::size_t k) {
-    KeptSpin& turning = domain.kept_spins[k];
-    const auto patches = patches_of<D>(domain.grid.patches, turning.body);
-    if (patches.empty()) return;
-    const auto first = static_cast<std::size_t>(patches.data() - domain.grid.patches.data());
-    TurningSums sums;
-    for (std::size_t p = first; p < first + patches.size(); ++p)
-      add_nodes(domain, p, turning.centre, sums);
-    move_to_centre(sums, turning.centre);
-    const ActingOnBody as_whole = acting_as_whole(domain, turning.body);
-    const Vector3 force = as_whole.force();
-    const Vector3 alpha = lacking(domain, patches[0], sums,
-                                  as_whole.moment() - cross(turning.centre, force), turning);
-    const Vector3 straight = (1.0 / sums.motion.mass) * force;
-    turning.velocity =
-        (1.0 / sums.motion.mass) * sums.motion.momentum +
-        time_of_forces(domain, patches[0]) *
-            ((1.0 / sums.motion.mass) * sums.force + straight + in_space<D>(domain.gravity));
-    // Kinetic energy is that of the body too.
-    domain.sums[first].kept_ahead -= 0.5 * turning.excess * dot(turning.spin, turning.spin);
-    for (std::size_t p = first; p < first + patches.size(); ++p)
-      add_forces(domain, p, turning.centre, straight, alpha);
-  });
+  const auto of_patch = [&](std::size_t p, const KeptSpin& turning) {
+    return sums_of_nodes(domain, p, turning.centre);
+  };
+  sum_over_bodies<TurningSums>(
+      domain, of_patch, [&](KeptSpin& turning, TurningSums sums, std::size_t first) {
+        move_to_centre(sums, turning.centre);
+        const auto patches = patches_of<D>(domain.grid.patches, turning.body);
+        const ActingOnBody as_whole = acting_as_whole(domain, turning.body);
+        const Vector3 force = as_whole.force();
+        const Vector3 alpha = lacking(domain, patches[0], sums,
+                                      as_whole.moment() - cross(turning.centre, force), turning);
+        const Vector3 straight = (1.0 / sums.motion.mass) * force;
+        turning.velocity =
+            (1.0 / sums.motion.mass) * sums.motion.momentum +
+            time_of_forces(domain, patches[0]) *
+                ((1.0 / sums.motion.mass) * sums.force + straight + in_space<D>(domain.gravity));
+        // Kinetic energy is that of the body too.
+        if (first != of_another_rank)
+          domain.sums[first].kept_ahead -= 0.5 * turning.excess * dot(turning.spin, turning.spin);
+        for (const Patch<D>& patch : patches)
+          add_forces(domain, static_cast<std::size_t>(&patch - domain.grid.patches.data()),
+                     turning.centre, straight, alpha);
+      });
 }
 
 template void turn_in_body<2>(Domain<2>&);

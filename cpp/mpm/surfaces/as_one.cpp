@@ -6,12 +6,6 @@
 namespace mpm {
 namespace {
 
-/// The first part of a body.
-template <int D>
-const SurfacePart<D>& part_as_one(const Surfaces<D>& surfaces, int body) {
-  return *std::ranges::lower_bound(surfaces.parts, body, {}, &SurfacePart<D>::body);
-}
-
 template <int D>
 double time_of_surface_forces(const Domain<D>& domain) {
   return 0.5 * (domain.time_step + domain.step_before);
@@ -44,9 +38,11 @@ void move_points_as_one(Domain<D>& domain) {
 
 template <int D>
 void add_work_as_one(Domain<D>& domain, bool at_end) {
+  PatchSums<D>* const counted = sums_as_one(domain);
+  if (counted == nullptr) return;
+  PatchSums<D>& sums = *counted;
   for (const ActingOnBody& on : domain.surfaces.on_bodies) {
     const RigidMotion motion = motion_as_one(domain, on.body);
-    PatchSums<D>& sums = domain.sums[part_as_one(domain.surfaces, on.body).patch];
     const auto work = [&](const Vector3& force, const Vector3& moment) {
       return 0.5 * domain.time_step *
              (dot(force, motion.velocity) + dot(moment - cross(motion.centre, force), motion.spin));
@@ -76,9 +72,10 @@ void push_rigid_by_surfaces(Domain<D>& domain) {
     const Body<D>& body = domain.body_at(on.body);
     if (body.keeps_nodes()) continue;  // turn_in_body()
     if (body.is_prescribed()) {
-      PatchSums<D>& sums = domain.sums[part_as_one(domain.surfaces, on.body).patch];
-      for (int a = 0; a < D; ++a) sums.prescribed.impulse[a] += acts * on.force()[a];
-      sums.angular.on_prescribed += acts * on.moment();
+      if (PatchSums<D>* const sums = sums_as_one(domain)) {
+        for (int a = 0; a < D; ++a) sums->prescribed.impulse[a] += acts * on.force()[a];
+        sums->angular.on_prescribed += acts * on.moment();
+      }
       continue;
     }
     const RigidMotion motion = motion_as_one(domain, on.body);

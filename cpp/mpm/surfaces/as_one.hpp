@@ -32,6 +32,15 @@ inline ActingOnBody& acting_on_body(std::vector<ActingOnBody>& all, int body) {
   return *at;
 }
 
+/// Where what acts on bodies as wholes is counted, by who has the first part that lies in a patch:
+/// nowhere on other ranks.
+template <int D>
+PatchSums<D>* sums_as_one(Domain<D>& domain) {
+  const auto& parts = domain.surfaces.parts;
+  const auto first = std::ranges::find(parts, false, &SurfacePart<D>::as_one);
+  return first == parts.end() || first->foreign ? nullptr : &domain.sums[first->patch];
+}
+
 /// Take the points along with their bodies, which have moved.
 template <int D>
 void move_points_as_one(Domain<D>& domain);

@@ -1,6 +1,10 @@
 #include "mpm/surfaces/between.hpp"
 
+#include <tuple>
+
+#include "mpm/comm/letters.hpp"
 #include "mpm/surfaces/restitution.hpp"
+#include "mpm/surfaces/tell_others.hpp"
 
 namespace mpm {
 namespace {
@@ -15,15 +19,64 @@ void keep_deepest(ActingBetween<D>& pair, double overlap, const Vec<double, D>& 
   pair.place = place;
 }
 
-/// The last of the pairs so far if it is that of these bodies, or a new one.
+/// What passes between two bodies by one part, or by a bond of it: with the place that it has in
+/// the order of all.
 template <int D>
-ActingBetween<D>& last_of(std::vector<ActingBetween<D>>& all, int a, int b) {
-  if (all.empty() || all.back().a != a || all.back().b != b) {
+struct BetweenByPart {
+  std::uint64_t place = 0;
+  ActingBetween<D> pair;
+};
+
+/// The last of the pairs so far if it is that of these bodies at this place, or a new one.
+template <int D>
+ActingBetween<D>& last_of(std::vector<BetweenByPart<D>>& all, std::uint64_t place, int a, int b) {
+  if (all.empty() || all.back().place != place || all.back().pair.a != a ||
+      all.back().pair.b != b) {
     all.emplace_back();
-    all.back().a = a;
-    all.back().b = b;
+    all.back().place = place;
+    all.back().pair.a = a;
+    all.back().pair.b = b;
   }
-  return all.back();
+  return all.back().pair;
+}
+
+/// What passes by the touches of a part.
+template <int D>
+void add_part(const Domain<D>& domain, std::size_t number, std::vector<BetweenByPart<D>>& all) {
+  const Surfaces<D>& surfaces = domain.surfaces;
+  const SurfacePart<D>& part = surfaces.parts[number];
+  const bool faces = restitution_takes(domain.contact_settings);
+  for (const SurfaceTouch<D>& touch : part.touches) {
+    if (!(touch.pushed > 0.0) || touch.opposite == part.body) continue;
+    if (is_face(touch.opposite) && !faces) continue;
+    const bool first = is_face(touch.opposite) || part.body < touch.opposite;
+    const int a = first ? part.body : touch.opposite, b = first ? touch.opposite : part.body;
+    ActingBetween<D>& pair = last_of(all, number, a, b);
+    const double sign = first ? 1.0 : -1.0, size = norm(touch.push);
+    const Vec<double, D> place = surfaces.places[touch.point] + touch.arm;
+    pair.on_first += sign * (touch.push + touch.rub);
+    pair.rubbed += touch.rubbed;
+    pair.push += sign * touch.push;
+    pair.middle += size * place;
+    pair.size += size;
+    pair.stiffness += touch.stiffness;
+    keep_deepest(pair, touch.overlap, -sign * normalised(touch.push), place);
+  }
+}
+
+/// What bonds of own points pull with, behind all parts.
+template <int D>
+void add_own_bonds(const Surfaces<D>& surfaces, std::vector<BetweenByPart<D>>& all) {
+  for (const Bond<D>& bond : surfaces.bonds) {
+    const std::uint32_t number = surfaces.hosts[surfaces.points[bond.first].host].part;
+    if (surfaces.parts[number].foreign) continue;
+    const bool first = bond.from < bond.body;
+    const int a = first ? bond.from : bond.body, b = first ? bond.body : bond.from;
+    ActingBetween<D>& pair = last_of(all, surfaces.parts.size() + number, a, b);
+    pair.on_first += (first ? 1.0 : -1.0) * bond.pull;
+    // They touch along no plane.
+    keep_deepest(pair, 0.0, Vec<double, D>::zero(), surfaces.places[bond.first]);
+  }
 }
 
 }  // namespace
@@ -31,53 +84,30 @@ ActingBetween<D>& last_of(std::vector<ActingBetween<D>>& all, int a, int b) {
 template <int D>
 void sum_between(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
-  const bool faces = restitution_takes(domain.contact_settings);
+  std::vector<BetweenByPart<D>> parts;
+  for (std::size_t k = 0; k < surfaces.parts.size(); ++k)
+    if (!surfaces.parts[k].foreign) add_part(domain, k, parts);
+  add_own_bonds(surfaces, parts);
+  parts = entries_of_all(*domain.grid.partition.comm, parts);
+  std::ranges::stable_sort(parts, [](const BetweenByPart<D>& x, const BetweenByPart<D>& y) {
+    return std::tuple(x.pair.a, x.pair.b, x.place) < std::tuple(y.pair.a, y.pair.b, y.place);
+  });
   std::vector<ActingBetween<D>>& all = surfaces.between;
   all.clear();
-  for (const SurfacePart<D>& part : surfaces.parts)
-    for (const SurfaceTouch<D>& touch : part.touches) {
-      if (!(touch.pushed > 0.0) || touch.opposite == part.body) continue;
-      if (is_face(touch.opposite) && !faces) continue;
-      const bool first = is_face(touch.opposite) || part.body < touch.opposite;
-      ActingBetween<D>& pair =
-          first ? last_of(all, part.body, touch.opposite) : last_of(all, touch.opposite, part.body);
-      const double sign = first ? 1.0 : -1.0, size = norm(touch.push);
-      const Vec<double, D> place = surfaces.places[touch.point] + touch.arm;
-      pair.on_first += sign * (touch.push + touch.rub);
-      pair.rubbed += touch.rubbed;
-      pair.push += sign * touch.push;
-      pair.middle += size * place;
-      pair.size += size;
-      pair.stiffness += touch.stiffness;
-      keep_deepest(pair, touch.overlap, -sign * normalised(touch.push), place);
-    }
-  for (const Bond<D>& bond : surfaces.bonds) {
-    const bool first = bond.from < bond.body;
-    ActingBetween<D>& pair =
-        first ? last_of(all, bond.from, bond.body) : last_of(all, bond.body, bond.from);
-    pair.on_first += (first ? 1.0 : -1.0) * bond.pull;
-    // They touch along no plane.
-    keep_deepest(pair, 0.0, Vec<double, D>::zero(), surfaces.places[bond.first]);
-  }
-  std::ranges::stable_sort(all, [](const ActingBetween<D>& x, const ActingBetween<D>& y) {
-    return x.a != y.a ? x.a < y.a : x.b < y.b;
-  });
-  std::size_t last = 0;
-  for (std::size_t k = 1; k < all.size(); ++k) {
-    ActingBetween<D>& pair = all[last];
-    if (pair.a != all[k].a || pair.b != all[k].b) {
-      all[++last] = all[k];
+  for (const auto& [place, one] : parts) {
+    if (all.empty() || all.back().a != one.a || all.back().b != one.b) {
+      all.push_back(one);
       continue;
     }
-    pair.on_first += all[k].on_first;
-    pair.rubbed += all[k].rubbed;
-    pair.push += all[k].push;
-    pair.middle += all[k].middle;
-    pair.size += all[k].size;
-    pair.stiffness += all[k].stiffness;
-    keep_deepest(pair, all[k].overlap, all[k].normal, all[k].place);
+    ActingBetween<D>& pair = all.back();
+    pair.on_first += one.on_first;
+    pair.rubbed += one.rubbed;
+    pair.push += one.push;
+    pair.middle += one.middle;
+    pair.size += one.size;
+    pair.stiffness += one.stiffness;
+    keep_deepest(pair, one.overlap, one.normal, one.place);
   }
-  if (!all.empty()) all.resize(last + 1);
 }
 
 template <int D>
@@ -87,8 +117,10 @@ void record_between(Domain<D>& domain) {
   // For as long as they have acted on the bodies.
   const double acts = 0.5 * (domain.time_step + domain.step_before);
   records.begin_step();
+  // All ranks know them, and one records them.
+  const bool is_first = domain.grid.partition.comm->rank() == 0;
   for (const ActingBetween<D>& pair : domain.surfaces.between) {
-    if (is_face(pair.b)) continue;
+    if (is_face(pair.b) || !is_first) continue;
     PairShare share{pair.a, pair.b, records.known(pair.a, pair.b, step)};
     double impulse[3] = {};
     for (int a = 0; a < D; ++a) {

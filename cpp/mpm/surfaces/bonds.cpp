@@ -3,11 +3,14 @@
 #include <ranges>
 #include <span>
 #include <stdexcept>
+#include <tuple>
 
+#include "mpm/comm/letters.hpp"
 #include "mpm/surfaces/law.hpp"
 #include "mpm/surfaces/near_points.hpp"
 #include "mpm/surfaces/overlaps.hpp"
 #include "mpm/surfaces/parts.hpp"
+#include "mpm/surfaces/tell_others.hpp"
 
 namespace mpm {
 namespace {
@@ -37,7 +40,8 @@ template <int D>
 std::vector<Found> find_touching(const Domain<D>& domain) {
   const Surfaces<D>& surfaces = domain.surfaces;
   std::vector<Found> found;
-  for (const SurfacePart<D>& part : surfaces.parts)
+  for (const SurfacePart<D>& part : surfaces.parts) {
+    if (part.foreign) continue;
     for_each_near_surface(domain, part, [&](const NearPoints& near, double height) {
       if (!shall_be_bonded(domain, part.body, near.body) || height > 1.0 + widest_gap) return;
       const Vec<double, D> here = surfaces.places[near.point];
@@ -54,6 +58,12 @@ std::vector<Found> find_touching(const Domain<D>& domain) {
       for (std::size_t k = begin; k < found.size(); ++k)
         found[k].share = 1.0 / static_cast<double>(found.size() - begin);
     });
+  }
+  // As one rank finds them.
+  found = entries_of_all(*domain.grid.partition.comm, found);
+  std::ranges::sort(found, [](const Found& x, const Found& y) {
+    return std::tuple(x.first, x.to, x.nearest) < std::tuple(y.first, y.to, y.nearest);
+  });
   return found;
 }
 
@@ -128,6 +138,7 @@ void pull_bonds(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
   domain.threads.for_each(surfaces.bonds.size(), [&](std::size_t k) {
     Bond<D>& bond = surfaces.bonds[k];
+    if (surfaces.parts[surfaces.hosts[surfaces.points[bond.first].host].part].foreign) return;
     bond.pull = bond.stiffness * (surfaces.places[bond.second] - surfaces.places[bond.first]);
   });
 }

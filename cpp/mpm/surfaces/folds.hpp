@@ -41,6 +41,8 @@ class FoldedBodies {
   static constexpr double apart = 4.0;  // cells
 
   Vec<double, D> place_in_body(std::uint32_t c) const {
+    const auto& at_start = domain_.surfaces.others.places_at_start;
+    if (!at_start.empty()) return at_start[c];
     const ContactPoint<D>& point = domain_.surfaces.points[c];
     const Host<D>& host = domain_.surfaces.hosts[point.host];
     const int body = domain_.surfaces.parts[host.part].body;

@@ -3,7 +3,9 @@
 #include "mpm/surfaces/bonds.hpp"
 #include "mpm/surfaces/felt.hpp"
 #include "mpm/surfaces/folds.hpp"
+#include "mpm/surfaces/parts.hpp"
 #include "mpm/surfaces/point_boxes.hpp"
+#include "mpm/surfaces/tell_others.hpp"
 
 namespace mpm {
 namespace {
@@ -20,6 +22,13 @@ double reach_of_lists(const Surfaces<D>& surfaces) {
   return surfaces.spacing * (SurfacePoint<D>::reach + margin);
 }
 
+/// The largest of some numbers of all ranks; 0 if there are none.
+template <int D>
+double largest_of_all(const Domain<D>& domain, const std::vector<double>& numbers) {
+  const double here = numbers.empty() ? 0.0 : *std::ranges::max_element(numbers);
+  return all_max(*domain.grid.partition.comm, here);
+}
+
 /// How far the farthest point has moved since lists were made [m].
 template <int D>
 double moved_since(Domain<D>& domain) {
@@ -27,12 +36,13 @@ double moved_since(Domain<D>& domain) {
   std::vector<double> farthest(surfaces.parts.size(), 0.0);
   domain.threads.for_each(surfaces.parts.size(), [&](std::size_t k) {
     const SurfacePart<D>& part = surfaces.parts[k];
-    for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
+    for (std::uint32_t c = part.first_point; !part.foreign && c < part.first_point + part.points;
+         ++c) {
       const Vec<double, D> way = surfaces.places[c] - surfaces.places_of_lists[c];
       farthest[k] = std::max(farthest[k], dot(way, way));
     }
   });
-  return std::sqrt(*std::ranges::max_element(farthest));
+  return std::sqrt(largest_of_all(domain, farthest));
 }
 
 /// The fastest that points near each other have moved against each other since lists were made
@@ -52,7 +62,7 @@ double closing_speed(Domain<D>& domain) {
       farthest[k] = std::max(farthest[k], dot(apart, apart));
     }
   });
-  return std::sqrt(*std::ranges::max_element(farthest)) / surfaces.age_of_lists;
+  return std::sqrt(largest_of_all(domain, farthest)) / surfaces.age_of_lists;
 }
 
 /// The boxes that points of one may feel: of other bodies, one after another, and of their own if
@@ -172,9 +182,7 @@ void make_near_lists(Domain<D>& domain) {
   const double reach = reach_of_lists(surfaces);
   const PointBoxes<D> boxes(domain.grid.origin, reach, surfaces.places, body_of);
   const FoldedBodies<D> folded(domain, reach);
-  domain.threads.for_each(surfaces.parts.size(), [&](std::size_t k) {
-    find_near(domain, boxes, folded, surfaces.parts[k]);
-  });
+  for_each_own_part(domain, [&](SurfacePart<D>& part) { find_near(domain, boxes, folded, part); });
   surfaces.awake_until = 0.0;
 }
 
@@ -186,18 +194,21 @@ void find_near_points(Domain<D>& domain) {
   if (known) surfaces.moved = moved_since(domain);
   surfaces.age_of_lists += domain.time_step;
   const bool anew = !known || !(surfaces.moved < 0.5 * margin * e);
-  if (known && (anew || domain.step % steps_between_speeds == 0))
-    surfaces.closing = closing_speed(domain);
+  const bool measures = known && (anew || domain.step % steps_between_speeds == 0);
+  if (anew || measures) tell_all_places(domain);
+  if (measures) surfaces.closing = closing_speed(domain);
   if (anew) {
     make_near_lists(domain);
     surfaces.places_of_lists = surfaces.places;
     surfaces.age_of_lists = surfaces.moved = 0.0;
   }
-  if (surfaces.moved < surfaces.awake_until) return;
-  surfaces.awake_until = surfaces.moved + 0.5 * margin_of_awake * e;
-  domain.threads.for_each(surfaces.parts.size(), [&](std::size_t k) {
-    find_awake(surfaces, surfaces.awake_until, surfaces.parts[k]);
-  });
+  if (!(surfaces.moved < surfaces.awake_until)) {
+    surfaces.awake_until = surfaces.moved + 0.5 * margin_of_awake * e;
+    for_each_own_part(
+        domain, [&](SurfacePart<D>& part) { find_awake(surfaces, surfaces.awake_until, part); });
+    ask_for_awake(domain);
+  }
+  tell_awake(domain);
 }
 
 template void make_near_lists<2>(Domain<2>&);

@@ -179,6 +179,7 @@ void set_back_overlaps(Domain<D>& domain) {
   const double least = least_sum(surfaces);
   const double seen = 1e-6 * domain.grid.cell_size;  // of what is drawn into each other
   for (SurfacePart<D>& part : surfaces.parts) {
+    if (part.foreign) continue;
     std::size_t next = 0;
     for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
       const auto set_back = [&](Opposite opposite, double overlap) {

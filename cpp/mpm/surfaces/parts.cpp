@@ -2,75 +2,136 @@
 
 #include <cassert>
 
+#include "mpm/comm/letters.hpp"
+#include "mpm/grid/connect.hpp"
 #include "mpm/schedule/cell_loop.hpp"
 #include "mpm/surfaces/host_motion.hpp"
 
 namespace mpm {
 namespace {
 
-/// A point of the last host, or of one that is still to come.
+/// A piece of the surface of a body, in one tile, as the rank that has its particles tells of it.
 template <int D>
-void add_point(Surfaces<D>& surfaces, std::uint32_t host, const GivenPoint<D>& given) {
-  surfaces.points.push_back({host, given.offset, given.area});
-  surfaces.given_of.push_back(static_cast<std::uint32_t>(&given - surfaces.given.data()));
-}
+struct PieceHead {
+  std::int32_t body = 0, rank = 0;
+  Index<D> tile{};
+  bool as_one = false;
+  std::uint32_t hosts = 0, points = 0;
+};
+template <int D>
+struct PieceOfSurface {
+  struct Point {
+    std::uint32_t given = 0, host = 0;  // among those given; from the first of the piece
+    Vec<double, D> place;               // [m]
+  };
+  PieceHead<D> head;
+  std::vector<Point> points{};
+  std::vector<Host<D>> hosts{};  // of own ones
+};
 
-/// The part of a patch whose particles carry some of the points of its body, by their particles.
+/// The piece of a patch, of the points of its body by their particles. Bodies that do not deform
+/// have one host.
 template <int D>
-void add_part(Domain<D>& domain, std::size_t p, std::span<const GivenPoint<D>> of_body) {
-  Surfaces<D>& surfaces = domain.surfaces;
-  const Patch<D>& patch = domain.grid.patches[p];
+PieceOfSurface<D> piece_of_patch(const Domain<D>& domain, const Patch<D>& patch,
+                                 std::span<const GivenPoint<D>> of_body) {
   const ParticlePool<D>& pool = domain.pool_of(patch);
-  SurfacePart<D> part;
-  part.body = patch.body;
-  part.tile = patch.tile;
-  part.patch = static_cast<std::uint32_t>(p);
-  part.first_host = static_cast<std::uint32_t>(surfaces.hosts.size());
-  part.first_point = static_cast<std::uint32_t>(surfaces.points.size());
-  for_each_cell(domain.grid, pool, patch, [&](const CellRange<D>& cell) {
-    for (std::uint32_t k = 0; k < cell.count; ++k) {
-      const std::uint32_t row = cell.rows[k];
-      const auto own =
-          std::ranges::equal_range(of_body, pool.id[row], {}, &GivenPoint<D>::particle);
-      if (own.empty()) continue;
-      Host<D> host{static_cast<std::uint32_t>(surfaces.parts.size()), row, cell.first_node, {}};
-      for (int a = 0; a < D; ++a)
-        host.xi[a] = local_coordinate(domain.grid.in_cells(pool.listed(a)[row], a),
-                                      cell.cell[static_cast<std::size_t>(a)]);
-      for (const GivenPoint<D>& point : own)
-        add_point(surfaces, static_cast<std::uint32_t>(surfaces.hosts.size()), point);
-      surfaces.hosts.push_back(host);
-    }
-  });
-  part.hosts = static_cast<std::uint32_t>(surfaces.hosts.size()) - part.first_host;
-  part.points = static_cast<std::uint32_t>(surfaces.points.size()) - part.first_point;
-  if (part.points > 0) surfaces.parts.push_back(part);
+  const bool as_one = !patch.keeps;
+  PieceOfSurface<D> piece{
+      {patch.body, domain.grid.partition.comm->rank(), patch.tile, as_one, 0, 0}};
+  if (as_one) piece.hosts.push_back({0, 0, 0, {}});
+  const auto add = [&](std::uint32_t row, auto&& make_host) {
+    const auto own = std::ranges::equal_range(of_body, pool.id[row], {}, &GivenPoint<D>::particle);
+    if (own.empty()) return;
+    make_host();
+    for (const GivenPoint<D>& point : own)
+      piece.points.push_back({static_cast<std::uint32_t>(&point - domain.surfaces.given.data()),
+                              static_cast<std::uint32_t>(piece.hosts.size() - 1),
+                              pool.position_of(row) + point.offset});
+  };
+  if (as_one) {
+    for (const std::uint32_t row : pool.rows(patch)) add(row, [] {});
+  } else {
+    for_each_cell(domain.grid, pool, patch, [&](const CellRange<D>& cell) {
+      for (std::uint32_t k = 0; k < cell.count; ++k) {
+        const std::uint32_t row = cell.rows[k];
+        add(row, [&] {
+          Host<D> host{0, row, cell.first_node, {}};
+          for (int a = 0; a < D; ++a)
+            host.xi[a] = local_coordinate(domain.grid.in_cells(pool.listed(a)[row], a),
+                                          cell.cell[static_cast<std::size_t>(a)]);
+          piece.hosts.push_back(host);
+        });
+      }
+    });
+  }
+  piece.head.hosts = static_cast<std::uint32_t>(piece.hosts.size());
+  piece.head.points = static_cast<std::uint32_t>(piece.points.size());
+  return piece;
 }
 
-/// Those of a body that does not deform, by the places of their particles.
+/// Those of all ranks, by body and tile.
 template <int D>
-void add_part_as_one(Domain<D>& domain, std::size_t first_patch,
-                     std::span<const GivenPoint<D>> of_body) {
-  Surfaces<D>& surfaces = domain.surfaces;
-  SurfacePart<D> part;
-  part.body = of_body.front().body;
-  part.as_one = true;
-  part.patch = static_cast<std::uint32_t>(first_patch);
-  part.first_host = static_cast<std::uint32_t>(surfaces.hosts.size());
-  part.first_point = static_cast<std::uint32_t>(surfaces.points.size());
-  part.hosts = 1;
-  surfaces.hosts.push_back({static_cast<std::uint32_t>(surfaces.parts.size()), 0, 0, {}});
-  const ParticlePool<D>& pool = domain.pool_of(domain.body_at(part.body));
-  surfaces.places.resize(surfaces.points.size());
-  for (const Patch<D>& patch : patches_of<D>(domain.grid.patches, part.body))
-    for (const std::uint32_t row : pool.rows(patch))
-      for (const GivenPoint<D>& point :
-           std::ranges::equal_range(of_body, pool.id[row], {}, &GivenPoint<D>::particle)) {
-        add_point(surfaces, part.first_host, point);
-        surfaces.places.push_back(pool.position_of(row) + point.offset);
-      }
-  part.points = static_cast<std::uint32_t>(surfaces.points.size()) - part.first_point;
-  surfaces.parts.push_back(part);
+std::vector<PieceOfSurface<D>> all_pieces(const Domain<D>& domain) {
+  const std::vector<GivenPoint<D>>& given = domain.surfaces.given;
+  std::vector<PieceOfSurface<D>> pieces;
+  for (const Patch<D>& patch : domain.grid.patches) {
+    const auto own = std::ranges::equal_range(given, patch.body, {}, &GivenPoint<D>::body);
+    if (own.empty() || patch.foreign) continue;
+    pieces.push_back(piece_of_patch<D>(domain, patch, {own.begin(), own.end()}));
+    if (pieces.back().points.empty()) pieces.pop_back();
+  }
+  Comm& comm = *domain.grid.partition.comm;
+  Mail mail;
+  for (int rank = 0; rank < comm.size(); ++rank) {
+    if (rank == comm.rank()) continue;
+    mail.out.push_back({rank, {}});
+    for (const PieceOfSurface<D>& piece : pieces) {
+      write(mail.out.back(), piece.head);
+      write_all<typename PieceOfSurface<D>::Point>(mail.out.back(), piece.points);
+    }
+  }
+  comm.exchange(mail);
+  for (const Letter& letter : mail.in)
+    for (Reader reader(letter); !reader.done();) {
+      PieceOfSurface<D>& piece = pieces.emplace_back();
+      piece.head = reader.template read<PieceHead<D>>();
+      for (std::uint32_t k = 0; k < piece.head.points; ++k)
+        piece.points.push_back(reader.template read<typename PieceOfSurface<D>::Point>());
+    }
+  std::ranges::sort(pieces, [](const PieceOfSurface<D>& x, const PieceOfSurface<D>& y) {
+    return patch_less<D>(x.head.body, x.head.tile, y.head.body, y.head.tile);
+  });
+  return pieces;
+}
+
+/// A part of its own, or of a body that does not deform more of the last.
+template <int D>
+void add_piece(Surfaces<D>& surfaces, int here, const PieceOfSurface<D>& piece) {
+  const PieceHead<D>& head = piece.head;
+  if (!head.as_one || surfaces.parts.empty() || surfaces.parts.back().body != head.body) {
+    SurfacePart<D>& part = surfaces.parts.emplace_back();
+    part.body = head.body;
+    part.tile = head.tile;
+    part.as_one = head.as_one;
+    part.rank = head.rank;
+    part.foreign = head.rank != here;
+    part.first_host = static_cast<std::uint32_t>(surfaces.hosts.size());
+    part.hosts = head.hosts;
+    part.first_point = static_cast<std::uint32_t>(surfaces.points.size());
+    const auto number = static_cast<std::uint32_t>(surfaces.parts.size() - 1);
+    for (std::uint32_t k = 0; k < head.hosts; ++k) {
+      surfaces.hosts.push_back(piece.hosts.empty() ? Host<D>{} : piece.hosts[k]);
+      surfaces.hosts.back().part = number;
+    }
+  }
+  SurfacePart<D>& part = surfaces.parts.back();
+  for (const auto& point : piece.points) {
+    const GivenPoint<D>& given = surfaces.given[point.given];
+    surfaces.points.push_back({part.first_host + point.host, given.offset, given.area});
+    surfaces.given_of.push_back(point.given);
+    surfaces.places.push_back(point.place);
+  }
+  part.points += head.points;
 }
 
 }  // namespace
@@ -89,44 +150,34 @@ void start_parts(Domain<D>& domain) {
   surfaces.points.clear();
   surfaces.places.clear();
   surfaces.given_of.clear();
-  for (std::size_t p = 0; p < domain.grid.patches.size(); ++p) {
-    const auto own =
-        std::ranges::equal_range(given, domain.grid.patches[p].body, {}, &GivenPoint<D>::body);
-    if (own.empty()) continue;
-    const int body = domain.grid.patches[p].body;
-    if (domain.body_at(body).keeps_nodes())
-      add_part<D>(domain, p, {own.begin(), own.end()});
-    else if (p == 0 || domain.grid.patches[p - 1].body != body)
-      add_part_as_one<D>(domain, p, {own.begin(), own.end()});
-  }
-  surfaces.places.resize(surfaces.points.size());
+  const Comm& comm = *domain.grid.partition.comm;
+  for (const PieceOfSurface<D>& piece : all_pieces(domain)) add_piece(surfaces, comm.rank(), piece);
+  if (!comm.alone()) surfaces.others.places_at_start = surfaces.places;
   surfaces.place_on_hosts.assign(surfaces.hosts.size(), 0);
   surfaces.place_of_motion.assign(surfaces.hosts.size(), 0);
   find_parts(domain);
-  place_points(domain);
 }
 
 template <int D>
 void find_parts(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
   const std::vector<Patch<D>>& patches = domain.grid.patches;
-  const auto is_of = [](const SurfacePart<D>& part, const Patch<D>& patch) {
-    return part.body == patch.body && (part.as_one || part.tile == patch.tile);
-  };
   const bool known =
       surfaces.part_of.size() == patches.size() &&
       std::ranges::all_of(surfaces.parts, [&](const SurfacePart<D>& part) {
-        return part.patch < patches.size() && is_of(part, patches[part.patch]) &&
-               !(part.as_one && part.patch > 0 && is_of(part, patches[part.patch - 1]));
+        return part.as_one || part.foreign ||
+               (part.patch < patches.size() && part.body == patches[part.patch].body &&
+                part.tile == patches[part.patch].tile);
       });
   if (known) return;
   surfaces.part_of.assign(patches.size(), -1);
-  std::size_t p = 0;  // both are by body, then by tile
   for (std::size_t k = 0; k < surfaces.parts.size(); ++k) {
-    while (!is_of(surfaces.parts[k], patches[p])) ++p;
-    assert(p < patches.size());
-    surfaces.parts[k].patch = static_cast<std::uint32_t>(p);
-    surfaces.part_of[p] = static_cast<std::int32_t>(k);
+    SurfacePart<D>& part = surfaces.parts[k];
+    if (part.as_one || part.foreign) continue;
+    const int p = find_patch<D>(domain.grid, part.body, part.tile);
+    assert(p >= 0);
+    part.patch = static_cast<std::uint32_t>(p);
+    surfaces.part_of[part.patch] = static_cast<std::int32_t>(k);
   }
 }
 
@@ -135,7 +186,7 @@ void place_points(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
   domain.threads.for_each(surfaces.parts.size(), [&](std::size_t k) {
     const SurfacePart<D>& part = surfaces.parts[k];
-    if (part.as_one) return;
+    if (part.as_one || part.foreign) return;
     const ParticlePool<D>& pool = domain.pool_of(domain.body_at(part.body));
     std::uint32_t host = part.first_host;
     Mat<double, D> F = deformation_of(pool, surfaces.hosts[host]);
@@ -153,7 +204,7 @@ void place_points(Domain<D>& domain) {
 template <int D>
 void add_work_of_surfaces(Domain<D>& domain, std::size_t patch) {
   const SurfacePart<D>* const part = part_of(domain, patch);
-  if (part == nullptr || part->as_one) return;
+  if (part == nullptr) return;
   PatchSums<D>& sums = domain.sums[patch];
   for (const ActingOnHost<D>& on : acting_on(domain.surfaces, *part)) {
     const HostMotion<D> motion = motion_of<velocity_at>(domain, domain.surfaces.hosts[on.host]);

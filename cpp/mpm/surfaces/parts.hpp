@@ -10,6 +10,15 @@ namespace mpm {
 template <int D>
 void start_parts(Domain<D>& domain);
 
+/// f(part) for the parts that this rank has.
+template <int D, class F>
+void for_each_own_part(Domain<D>& domain, F&& f) {
+  auto& parts = domain.surfaces.parts;
+  domain.threads.for_each(parts.size(), [&](std::size_t k) {
+    if (!parts[k].foreign) f(parts[k]);
+  });
+}
+
 /// Find the patches of the parts, of which the numbers change as others come and go.
 template <int D>
 void find_parts(Domain<D>& domain);

@@ -30,6 +30,7 @@ Vec<double, D> velocity_of_point(const Domain<D>& domain, std::uint32_t point,
   const Surfaces<D>& surfaces = domain.surfaces;
   const std::uint32_t host = surfaces.points[point].host;
   const SurfacePart<D>& part = surfaces.parts[surfaces.hosts[host].part];
+  if (part.foreign && !part.as_one) return host_elsewhere(surfaces, host).motion.at(reach);
   if (!part.as_one) return surfaces.motions[surfaces.place_of_motion[host] - 1].at(reach);
   const Vector3 v = motion_as_one(domain, part.body).velocity_at(in_space<D>(place));
   Vec<double, D> velocity;
@@ -60,12 +61,13 @@ void find_motions(Domain<D>& domain) {
   surfaces.moving.clear();
   const auto needs = [&](std::uint32_t point) {
     const std::uint32_t host = surfaces.points[point].host;
-    const bool as_one = surfaces.parts[surfaces.hosts[host].part].as_one;
-    if (as_one || surfaces.place_of_motion[host] != 0) return;
+    const SurfacePart<D>& part = surfaces.parts[surfaces.hosts[host].part];
+    if (part.as_one || part.foreign || surfaces.place_of_motion[host] != 0) return;
     surfaces.moving.push_back(host);
     surfaces.place_of_motion[host] = static_cast<std::uint32_t>(surfaces.moving.size());
   };
   for (const SurfacePart<D>& part : surfaces.parts) {
+    if (part.foreign) continue;
     for (const SurfaceTouch<D>& touch : part.touches) needs(touch.point);
     for (const FeltPoint<D>& felt : part.felt) needs(felt.point);
   }

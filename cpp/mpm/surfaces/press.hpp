@@ -11,9 +11,11 @@ Vec<double, D> reach_of(const Domain<D>& domain, std::uint32_t c, const Vec<doub
   const Surfaces<D>& surfaces = domain.surfaces;
   const ContactPoint<D>& point = surfaces.points[c];
   const Host<D>& host = surfaces.hosts[point.host];
-  if (surfaces.parts[host.part].as_one) return point.offset;  // nobody asks for it
-  const int body = surfaces.parts[host.part].body;
-  const Mat<double, D> F = deformation_of(domain.pool_of(domain.body_at(body)), host);
+  const SurfacePart<D>& part = surfaces.parts[host.part];
+  if (part.as_one) return point.offset;  // nobody asks for it
+  const Mat<double, D> F = part.foreign
+                               ? host_elsewhere(surfaces, point.host).deformation
+                               : deformation_of(domain.pool_of(domain.body_at(part.body)), host);
   return point.offset + product(inverse_of(F), place - surfaces.places[c]);
 }
 

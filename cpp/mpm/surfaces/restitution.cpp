@@ -60,6 +60,7 @@ void add_of_face(Surfaces<D>& surfaces, const ActingBetween<D>& pair, const Vect
                  const Vector3& place) {
   SurfacePart<D>& part =
       *std::ranges::lower_bound(surfaces.parts, pair.a, {}, &SurfacePart<D>::body);
+  if (part.foreign) return;
   const unsigned face = 1u << (-1 - pair.b);
   for (int a = 0; a < D; ++a) part.of_faces.add(face, a, force[a]);
   part.moment_of_faces += cross(place, force);

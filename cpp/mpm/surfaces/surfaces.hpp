@@ -16,6 +16,7 @@
 #include "mpm/layout/tile.hpp"
 #include "mpm/math/tensor.hpp"
 #include "mpm/rigid/rigid_motion.hpp"
+#include "mpm/surfaces/other_ranks.hpp"
 #include "mpm/walls/face_impulses.hpp"
 
 namespace mpm {
@@ -30,39 +31,11 @@ struct GivenPoint {
   std::uint32_t number = 0;    // as it was given, while bonds are made
 };
 
-/// A particle that carries contact points. What acts on these acts on its nodes.
-template <int D>
-struct Host {
-  std::uint32_t part = 0, row = 0;
-  std::int32_t first_node = 0;  // its cell's own, in the patch's block
-  Vec<double, D> xi;            // its place in its cell
-};
-
 template <int D>
 struct ContactPoint {
   std::uint32_t host = 0;
   Vec<double, D> offset;  // from the host, in the body at the start [m]
   double area = 0.0;      // [m^2; in 2D m times 1 m]
-};
-
-/// The sums of forces t at places X_p + d of a body, X_p that of the host: t, and t (x) d. They act
-/// on its nodes with t N_ip + (t (x) d) grad_X N_ip, of which force, moment and power are those of
-/// the forces at these places.
-template <int D>
-struct ForceAtHost {
-  Vec<double, D> force = Vec<double, D>::zero();  // [N]
-  Mat<double, D> moment{};                        // [N m]
-
-  void add(const Vec<double, D>& t, const Vec<double, D>& d) {
-    force += t;
-    for (int a = 0; a < D; ++a)
-      for (int b = 0; b < D; ++b) moment[a][b] += t[a] * d[b];
-  }
-  void add(const ForceAtHost& other) {
-    force += other.force;
-    for (int a = 0; a < D; ++a)
-      for (int b = 0; b < D; ++b) moment[a][b] += other.moment[a][b];
-  }
 };
 
 /// Whom a point touches: a body by its number, a face of the box by -1 - (2 axis + side).
@@ -118,28 +91,6 @@ struct NearPoints {
   double sleeps_until = 0.0;
 };
 
-/// How a host moves: the mean of its nodes' velocities, and its gradient in the body at the start.
-template <int D>
-struct HostMotion {
-  Vec<double, D> mean;      // [m/s]
-  Mat<double, D> gradient;  // [1/s]
-
-  /// At d from the host, in the body at the start.
-  Vec<double, D> at(const Vec<double, D>& d) const {
-    Vec<double, D> v = mean;
-    for (int a = 0; a < D; ++a)
-      for (int b = 0; b < D; ++b) v[a] += gradient[a][b] * d[b];
-    return v;
-  }
-  /// With forces that act there [W].
-  double power(const ForceAtHost<D>& forces) const {
-    double sum = dot(forces.force, mean);
-    for (int a = 0; a < D; ++a)
-      for (int b = 0; b < D; ++b) sum += forces.moment[a][b] * gradient[a][b];
-    return sum;
-  }
-};
-
 /// A contact point that is held to a place of another body (bonds.hpp).
 template <int D>
 struct Bond {
@@ -163,13 +114,6 @@ struct ActingBetween {
   Vec<double, D> normal = Vec<double, D>::zero(), place = Vec<double, D>::zero();
 };
 
-/// What acts on a host in the coming step.
-template <int D>
-struct ActingOnHost {
-  std::uint32_t host = 0;
-  ForceAtHost<D> push, rub;  // by springs, by friction
-};
-
 /// What acts on a body as a whole in the coming step: on one that does not deform all of it, on
 /// others what takes the energy of restitution.
 struct ActingOnBody {
@@ -188,9 +132,10 @@ template <int D>
 struct SurfacePart {
   int body = 0;
   Index<D> tile{};
-  bool as_one = false;  // of a body that does not deform
-  // Of that body and tile, as long as patches stay what they are; or the first of the body.
-  std::uint32_t patch = 0;
+  bool as_one = false;      // of a body that does not deform
+  bool foreign = false;     // another rank's
+  int rank = 0;             // whose it is
+  std::uint32_t patch = 0;  // of that body and tile, as long as patches stay what they are
   std::uint32_t first_host = 0, hosts = 0, first_point = 0, points = 0;
 
   std::vector<SurfaceTouch<D>> touches;                         // by point
@@ -223,7 +168,8 @@ struct Surfaces {
   double onset = 0.0;    // way over which springs begin, that of a step at the start [m]
   bool meet = false;     // do bodies touch each other by them?
 
-  std::vector<SurfacePart<D>> parts;            // by body, then by tile
+  std::vector<SurfacePart<D>> parts;  // by body, then by tile
+  OtherRanks<D> others;
   std::vector<std::int32_t> part_of;            // of each patch; -1: it has none
   std::vector<Host<D>> hosts;                   // by part
   std::vector<ContactPoint<D>> points;          // by host

@@ -1,7 +1,9 @@
 // What the surfaces of bodies do to each other at the end of a step, and to the bodies in the next.
+#include <array>
+
 #include "mpm/step/kept_nodes.hpp"
 #include "mpm/step/stage_functions.hpp"
-#include "mpm/surfaces/as_one.hpp"
+#include "mpm/surfaces/acting.hpp"
 #include "mpm/surfaces/between.hpp"
 #include "mpm/surfaces/bonds.hpp"
 #include "mpm/surfaces/host_motion.hpp"
@@ -14,96 +16,145 @@
 namespace mpm {
 namespace {
 
-/// What acts on the hosts, and on bodies that do not deform.
+/// f(given) for what the touches of an own part give to points of other bodies.
+template <int D, class F>
+void for_each_felt(const Surfaces<D>& surfaces, std::size_t number, const SurfaceTouch<D>& touch,
+                   F&& f) {
+  const SurfacePart<D>& part = surfaces.parts[number];
+  const Vec<double, D> place = surfaces.places[touch.point] + touch.arm;
+  const double push = touch.stiffness * touch.pushed;
+  for (std::uint32_t k = touch.first_felt; k < touch.first_felt + touch.felt; ++k) {
+    const FeltPoint<D>& felt = part.felt[k];
+    f(GivenToPoint<D>{number, felt.point, rubs(touch), -push * felt.slope, -felt.share * touch.rub,
+                      place});
+  }
+}
+
+/// f(bond, its place behind all parts) for bonds of own points.
+template <int D, class F>
+void for_each_own_bond(const Acting<D>& acting, const Surfaces<D>& surfaces, F&& f) {
+  for (std::size_t k = 0; k < surfaces.bonds.size(); ++k)
+    if (!acting.part_of_point(surfaces.bonds[k].first).foreign)
+      f(surfaces.bonds[k], surfaces.parts.size() + k);
+}
+
 template <int D>
-class Acting {
- public:
-  explicit Acting(Surfaces<D>& surfaces) : surfaces_(surfaces) {
-    for (const ActingOnHost<D>& one : surfaces_.on_hosts) surfaces_.place_on_hosts[one.host] = 0;
-    surfaces_.on_hosts.clear();
-    surfaces_.on_bodies.clear();
-  }
-  void push(std::uint32_t point, const Vec<double, D>& force) {
-    const ContactPoint<D>& at = surfaces_.points[point];
-    if (ActingOnBody* const body = body_of(at)) {
-      body->push += in_space<D>(force);
-      body->moment_of_push += cross(in_space<D>(surfaces_.places[point]), in_space<D>(force));
-      return;
-    }
-    on(at.host).push.add(force, at.offset);
-  }
-  /// At a place that is at a reach from the point's host.
-  void rub(std::uint32_t point, const Vec<double, D>& force, const Vec<double, D>& reach,
-           const Vec<double, D>& place) {
-    const ContactPoint<D>& at = surfaces_.points[point];
-    if (ActingOnBody* const body = body_of(at)) {
-      body->rub += in_space<D>(force);
-      body->moment_of_rub += cross(in_space<D>(place), in_space<D>(force));
-      return;
-    }
-    on(at.host).rub.add(force, reach);
-  }
-  void sort() {
-    std::ranges::sort(surfaces_.on_hosts, {}, &ActingOnHost<D>::host);
-    for (std::size_t k = 0; k < surfaces_.on_hosts.size(); ++k)
-      surfaces_.place_on_hosts[surfaces_.on_hosts[k].host] = static_cast<std::uint32_t>(k + 1);
-  }
+GivenToPoint<D> other_end(const Bond<D>& bond, std::uint64_t order) {
+  const Vec<double, D> none = Vec<double, D>::zero();
+  return {order, bond.second, false, -1.0 * bond.pull, none, none};
+}
 
- private:
-  ActingOnHost<D>& on(std::uint32_t host) {
-    std::uint32_t& place = surfaces_.place_on_hosts[host];
-    if (place == 0) {
-      surfaces_.on_hosts.push_back({host, {}, {}});
-      place = static_cast<std::uint32_t>(surfaces_.on_hosts.size());
-    }
-    return surfaces_.on_hosts[place - 1];
+/// What touches and bonds of other ranks give to points of this one, by order.
+template <int D>
+std::vector<GivenToPoint<D>> given_by_others(Domain<D>& domain, const Acting<D>& acting) {
+  Comm& comm = *domain.grid.partition.comm;
+  const Surfaces<D>& surfaces = domain.surfaces;
+  std::vector<GivenToPoint<D>> all;
+  if (comm.alone()) return all;
+  Mail mail;
+  const auto send = [&](const GivenToPoint<D>& given) {
+    if (acting.is_elsewhere(given.point))
+      write(letter_to(mail, acting.part_of_point(given.point).rank), given);
+  };
+  for (std::size_t k = 0; k < surfaces.parts.size(); ++k) {
+    if (surfaces.parts[k].foreign) continue;
+    for (const SurfaceTouch<D>& touch : surfaces.parts[k].touches)
+      if (touch.pushed > 0.0) for_each_felt(surfaces, k, touch, send);
   }
-  /// None if the point's body deforms.
-  ActingOnBody* body_of(const ContactPoint<D>& point) {
-    const SurfacePart<D>& part = surfaces_.parts[surfaces_.hosts[point.host].part];
-    if (!part.as_one) return nullptr;
-    return &acting_on_body(surfaces_.on_bodies, part.body);
-  }
+  for_each_own_bond(acting, surfaces, [&](const Bond<D>& bond, std::uint64_t order) {
+    send(other_end(bond, order));
+  });
+  comm.exchange(mail);
+  for (const Letter& letter : mail.in)
+    for (Reader reader(letter); !reader.done();)
+      all.push_back(reader.template read<GivenToPoint<D>>());
+  std::ranges::stable_sort(all, {}, &GivenToPoint<D>::order);
+  return all;
+}
 
-  Surfaces<D>& surfaces_;
+/// Of the touches of an own part; returns how many there are.
+template <int D>
+std::size_t give_touches(Acting<D>& acting, const Surfaces<D>& surfaces, std::size_t number) {
+  std::size_t touching = 0;
+  for (const SurfaceTouch<D>& touch : surfaces.parts[number].touches) {
+    if (!(touch.pushed > 0.0)) continue;
+    ++touching;
+    acting.push(number, touch.point, touch.push);
+    if (rubs(touch))
+      acting.rub(number, touch.point, touch.rub, touch.reach,
+                 surfaces.places[touch.point] + touch.arm);
+    for_each_felt(surfaces, number, touch, [&](const GivenToPoint<D>& given) {
+      if (!acting.is_elsewhere(given.point)) acting.give(given);
+    });
+  }
+  return touching;
+}
+
+/// What is deepest, with its place in the order of all.
+template <int D>
+struct DeepestOfRank {
+  std::uint64_t part = 0;
+  DeepestPoint<D> point;
 };
+
+/// What is stored and how many touch, of all ranks, and what is deepest.
+template <int D>
+void sum_up(Domain<D>& domain, std::size_t touching) {
+  Surfaces<D>& surfaces = domain.surfaces;
+  Comm& comm = *domain.grid.partition.comm;
+  std::array<ExactSum, 2> stored;
+  DeepestOfRank<D> deepest;
+  for (std::size_t k = 0; k < surfaces.parts.size(); ++k) {
+    const SurfacePart<D>& part = surfaces.parts[k];
+    if (part.foreign) continue;
+    stored[0].add(part.stored_push);
+    stored[1].add(part.stored_rub);
+    for (const SurfaceTouch<D>& touch : part.touches)
+      if (touch.pushed > 0.0 && !is_face(touch.opposite) && touch.overlap > deepest.point.overlap)
+        deepest = {k, {part.body, touch.overlap, surfaces.places[touch.point] + touch.arm}};
+  }
+  for (const Bond<D>& bond : surfaces.bonds)
+    if (!surfaces.parts[surfaces.hosts[surfaces.points[bond.first].host].part].foreign)
+      stored[0].add(0.5 * dot(bond.pull, bond.pull) / bond.stiffness);
+  all_sum(comm, stored);
+  surfaces.stored_push = stored[0].value();
+  surfaces.stored_rub = stored[1].value();
+  surfaces.deepest = {};
+  std::uint64_t at = 0;
+  for (const DeepestOfRank<D>& one : entries_of_all(comm, std::vector{deepest})) {
+    const double overlap = one.point.overlap;
+    if (overlap < surfaces.deepest.overlap || !(overlap > 0.0)) continue;
+    if (overlap == surfaces.deepest.overlap && one.part > at) continue;
+    surfaces.deepest = one.point;
+    at = one.part;
+  }
+  surfaces.touching = static_cast<std::size_t>(all_sum(comm, static_cast<std::int64_t>(touching)));
+  surfaces.touching_max = std::max(surfaces.touching_max, surfaces.touching);
+}
 
 template <int D>
 void give_to_hosts(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
-  Acting<D> acting(surfaces);
-  surfaces.stored_push = surfaces.stored_rub = 0.0;
-  surfaces.touching = 0;
-  surfaces.deepest = {};
-  for (const SurfacePart<D>& part : surfaces.parts) {
-    surfaces.stored_push += part.stored_push;
-    surfaces.stored_rub += part.stored_rub;
-    for (const SurfaceTouch<D>& touch : part.touches) {
-      if (!(touch.pushed > 0.0)) continue;
-      ++surfaces.touching;
-      const Vec<double, D> place = surfaces.places[touch.point] + touch.arm;
-      if (!is_face(touch.opposite) && touch.overlap > surfaces.deepest.overlap)
-        surfaces.deepest = {part.body, touch.overlap, place};
-      const bool rubbed = rubs(touch);
-      acting.push(touch.point, touch.push);
-      if (rubbed) acting.rub(touch.point, touch.rub, touch.reach, place);
-      const double push = touch.stiffness * touch.pushed;
-      for (std::uint32_t k = 0; k < touch.felt; ++k) {
-        const FeltPoint<D>& felt = part.felt[touch.first_felt + k];
-        acting.push(felt.point, -push * felt.slope);
-        if (rubbed)
-          acting.rub(felt.point, -felt.share * touch.rub, reach_of(domain, felt.point, place),
-                     place);
-      }
-    }
+  Acting<D> acting(domain);
+  const std::vector<GivenToPoint<D>> others = given_by_others(domain, acting);
+  auto next = others.begin();
+  const auto give_until = [&](std::uint64_t order) {
+    for (; next != others.end() && next->order <= order; ++next) acting.give(*next);
+  };
+  std::size_t touching = 0;
+  for (std::size_t k = 0; k < surfaces.parts.size(); ++k) {
+    give_until(k);
+    if (!surfaces.parts[k].foreign) touching += give_touches(acting, surfaces, k);
   }
-  for (const Bond<D>& bond : surfaces.bonds) {
-    surfaces.stored_push += 0.5 * dot(bond.pull, bond.pull) / bond.stiffness;
-    acting.push(bond.first, bond.pull);
-    acting.push(bond.second, -1.0 * bond.pull);
-  }
-  surfaces.touching_max = std::max(surfaces.touching_max, surfaces.touching);
-  acting.sort();
+  for_each_own_bond(acting, surfaces, [&](const Bond<D>& bond, std::uint64_t order) {
+    give_until(order);
+    acting.push(order, bond.first, bond.pull);
+    const GivenToPoint<D> other = other_end(bond, order);
+    if (!acting.is_elsewhere(other.point)) acting.give(other);
+  });
+  give_until(std::numeric_limits<std::uint64_t>::max());
+  acting.finish();
+  sum_up(domain, touching);
 }
 
 /// The other half of the work of contact in the step, by the forces where the bodies are by now:
@@ -132,22 +183,20 @@ void touch_surfaces(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
   if (!surfaces.exist()) return;
   if (surfaces.meet) record_between(domain);
+  if (restitution_takes(domain.contact_settings)) tell_motions(domain);
   add_work_as_one(domain, false);
   move_points_as_one(domain);
   place_points(domain);
   if (surfaces.meet) find_near_points(domain);
-  domain.threads.for_each(surfaces.parts.size(),
-                          [&](std::size_t k) { find_overlaps(domain, surfaces.parts[k]); });
+  for_each_own_part(domain, [&](SurfacePart<D>& part) { find_overlaps(domain, part); });
   pull_bonds(domain);
   find_motions(domain);
-  domain.threads.for_each(surfaces.parts.size(),
-                          [&](std::size_t k) { press_part(domain, surfaces.parts[k]); });
+  for_each_own_part(domain, [&](SurfacePart<D>& part) { press_part(domain, part); });
   give_to_hosts(domain);
   sum_between(domain);
   add_restitution(domain);
   add_work_as_one(domain, true);
-  domain.threads.for_each(surfaces.parts.size(),
-                          [&](std::size_t k) { add_work_at_end(domain, surfaces.parts[k]); });
+  for_each_own_part(domain, [&](SurfacePart<D>& part) { add_work_at_end(domain, part); });
 }
 
 template <int D>
@@ -155,8 +204,7 @@ void load_by_surfaces(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
   if (!surfaces.exist()) return;
   find_parts(domain);
-  domain.threads.for_each(surfaces.parts.size(), [&](std::size_t k) {
-    const SurfacePart<D>& part = surfaces.parts[k];
+  for_each_own_part(domain, [&](SurfacePart<D>& part) {
     for (const ActingOnHost<D>& on : acting_on(surfaces, part)) {
       ForceAtHost<D> all = on.push;
       all.add(on.rub);

@@ -89,7 +89,7 @@ def pieces(
     if not len(side.points):
         rule = "is nowhere on the surface: the other shapes cover it or cut it off"
         raise case.error(("load", name, "side"), rule, "load another side", value=load.side)
-    numbers, positions = _candidates(side.points, positions, spacing, near)
+    numbers, positions = candidates(side.points, positions, spacing, near)
     points, owner = nearest_particles(positions, side.points, spacing)
     lost = np.bincount(points, minlength=len(side.points)) == 0
     if lost.any():
@@ -105,10 +105,10 @@ def pieces(
     return replace(found, particles=numbers[found.particles].astype(np.uint32))
 
 
-def _candidates(
+def candidates(
     points: Array, positions: Array, spacing: float, near: Near | None
 ) -> tuple[NDArray[np.int64], Array]:
-    """Return numbers and positions of the particles that may carry a load at points."""
+    """Return numbers and positions [m] of the particles that may carry what is at points."""
     if near is None:
         return np.arange(len(positions)), positions
     return near(points, _REACH * spacing)
@@ -118,7 +118,7 @@ def _at_point(case: Case, name: str, positions: Array, spacing: float, near: Nea
     """Return the pieces of a force: of no area, their sizes the particles' shares of it."""
     load = case.load[name]
     point = np.array([load.point], dtype=float)
-    numbers, positions = _candidates(point, positions, spacing, near)
+    numbers, positions = candidates(point, positions, spacing, near)
     away = np.linalg.norm(positions - point, axis=1)
     if not (away <= _REACH_OF_POINT * spacing).any():
         rule = f"is farther than {_REACH_OF_POINT:g} spacings from all particles of {load.body}"

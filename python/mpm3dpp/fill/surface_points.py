@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +13,8 @@ from numpy.typing import NDArray
 from mpm3dpp.base.frames import MATERIAL
 from mpm3dpp.case.frame import HOLDING
 from mpm3dpp.case.grid import CONTACT
-from mpm3dpp.case.load_pieces import nearest_particles
+from mpm3dpp.case.load_pieces import Near, candidates, nearest_particles
+from mpm3dpp.ranks.world import World, agreed
 from mpm3dpp.shapes.contact_points import (
     ContactPoints,
     points_of_ball,
@@ -45,7 +47,13 @@ def point_spacing(case: Case, parts: Iterable[FilledPart]) -> float | None:
 
 
 def add_surfaces(
-    core: Any, case: Case, part: FilledPart, number: int, particles: Particles, spacing: float
+    core: Any,
+    case: Case,
+    part: FilledPart,
+    number: int,
+    particles: Particles,
+    spacing: float,
+    sharing: Sharing,
 ) -> None:
     """Give the core the contact points of the bodies of an entry, if they touch others by them.
 
@@ -54,8 +62,9 @@ def add_surfaces(
         case: of which the entry is.
         part: the entry.
         number: of its first body in the core.
-        particles: of all its bodies.
+        particles: of all its bodies, or what this process has of them.
         spacing: e of the points [m].
+        sharing: among processes, of which each calls this.
 
     Raises:
         CaseError: a part of the surface has no particle near it.
@@ -63,29 +72,73 @@ def add_surfaces(
     meets = case.contact_enabled and case.is_rigid(part.name)
     if not meets and case.parts()[part.name].frame != MATERIAL:
         return
-    ends = np.cumsum(particles.counts)
-    for k, (begin, end) in enumerate(zip(ends - particles.counts, ends, strict=True)):
-        positions = particles.positions[begin:end]
-        if part.balls is None:
-            points = _points(case, part, positions, spacing)
-        else:
-            along = spacing / ALONG[case.grid.dimension]
-            centre, radius = part.balls[0][k], float(part.balls[1][k])
-            points = points_of_ball(centre, radius, along, 0.5 * spacing)
-        core.add_surface(number + k, *_carried(case, part, positions, points), spacing)
+    if part.balls is None:
+        found = [(number, *_of_body(case, part, particles.positions, spacing, sharing))]
+    else:
+        number, world = number + sharing.first, sharing.world
+        own = agreed(
+            lambda: list(_of_balls(case, part, number, particles, spacing, sharing)), world
+        )
+        found = own if world is None else [x for told in world.comm.allgather(own) for x in told]
+    for of_body in found:
+        core.add_surface(*of_body, spacing)
 
 
-def _points(case: Case, part: FilledPart, positions: Array, spacing: float) -> ContactPoints:
+@dataclass(frozen=True)
+class Sharing:
+    """How processes share an entry.
+
+    Attributes:
+        world: all of them; None where there is one.
+        first: of the grains that this process has, by their order in the entry.
+        near: gives the particles of a body near points, where each has a slice of it.
+    """
+
+    world: World | None = None
+    first: int = 0
+    near: Near | None = None
+
+
+Carried = tuple[list[int], Array, Array]
+"""Particles that carry points, the ways from them [m], and the areas [m^2; in 2D m]."""
+
+
+def _of_body(
+    case: Case, part: FilledPart, positions: Array, spacing: float, sharing: Sharing
+) -> Carried:
     shape = case.body[part.name].shape
     along, depth = spacing / ALONG[case.grid.dimension], 0.5 * spacing
+    near = sharing.near
     if shape is not None:
-        return points_of_shape(shape, along, depth, _held_planes(case))
-    return points_of_particles(positions, part.spacing, along, depth)
+        points = points_of_shape(shape, along, depth, _held_planes(case))
+    else:
+        if near is not None and sharing.world is not None:
+            positions, near = np.concatenate(sharing.world.comm.allgather(positions)), None
+        points = points_of_particles(positions, part.spacing, along, depth)
+    numbers, positions = candidates(points.places, positions, part.spacing, near)
+    owners, offsets, areas = _carried(case, part, positions, points)
+    return numbers[owners].tolist(), offsets, areas
 
 
-def _carried(
-    case: Case, part: FilledPart, positions: Array, points: ContactPoints
-) -> tuple[list[int], Array, Array]:
+def _of_balls(
+    case: Case,
+    part: FilledPart,
+    number: int,
+    particles: Particles,
+    spacing: float,
+    sharing: Sharing,
+) -> Iterable[tuple[int, list[int], Array, Array]]:
+    """Yield the number of each ball here, and what carries its points."""
+    assert part.balls is not None
+    ends = np.cumsum(particles.counts)
+    for k, (begin, end) in enumerate(zip(ends - particles.counts, ends, strict=True)):
+        along = spacing / ALONG[case.grid.dimension]
+        centre, radius = (of_all[sharing.first + k] for of_all in part.balls)
+        points = points_of_ball(centre, float(radius), along, 0.5 * spacing)
+        yield number + k, *_carried(case, part, particles.positions[begin:end], points)
+
+
+def _carried(case: Case, part: FilledPart, positions: Array, points: ContactPoints) -> Carried:
     """Return the particles nearest to the points, the ways from them, and the areas."""
     which, owner = nearest_particles(positions, points.places, part.spacing)
     shared = np.bincount(which, minlength=len(points.places))

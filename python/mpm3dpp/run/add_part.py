@@ -21,7 +21,7 @@ from mpm3dpp.case.pairs import bonds_of, laws_of
 from mpm3dpp.fill.initial import Overburden, start_columns
 from mpm3dpp.fill.parts import FilledPart, Particles
 from mpm3dpp.fill.slices import near_points
-from mpm3dpp.fill.surface_points import add_surfaces
+from mpm3dpp.fill.surface_points import Sharing, add_surfaces
 from mpm3dpp.ranks.world import World, share_of
 
 
@@ -49,7 +49,8 @@ def add_part(
     if part.balls is not None:
         leader, own = _add_grains(core, case, part, material, world)
         if point_spacing is not None:
-            add_surfaces(core, case, part, leader, own, point_spacing)
+            sharing = Sharing(world, share_of(len(part.names), world)[0])
+            add_surfaces(core, case, part, leader, own, point_spacing, sharing)
         return
     particles = part.own.particles if part.own else part.make(0, 1)
     positions, volumes = particles.positions, particles.volumes
@@ -69,7 +70,7 @@ def add_part(
         if load.body == part.name:
             add_load(core, case, name, number, pieces(case, name, positions, part.spacing, near))
     if point_spacing is not None:
-        add_surfaces(core, case, part, number, particles, point_spacing)
+        add_surfaces(core, case, part, number, particles, point_spacing, Sharing(shared, 0, near))
 
 
 def kind_of(case: Case, part: FilledPart) -> tuple[str, str]:

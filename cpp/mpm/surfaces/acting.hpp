@@ -1,0 +1,112 @@
+#pragma once
+// What contact between surfaces comes to for hosts and for bodies as wholes, in the order of the
+// parts and their touches, whichever ranks have these.
+#include "mpm/comm/letters.hpp"
+#include "mpm/surfaces/as_one.hpp"
+#include "mpm/surfaces/press.hpp"
+#include "mpm/surfaces/tell_others.hpp"
+
+namespace mpm {
+
+/// What a point gets by a touch or a bond of another's: a push, and a rub at a place if it rubs.
+template <int D>
+struct GivenToPoint {
+  std::uint64_t order = 0;  // of the part; behind all parts of the bond
+  std::uint32_t point = 0;
+  bool rubs = false;
+  Vec<double, D> push, rub, place;
+};
+
+template <int D>
+class Acting {
+ public:
+  explicit Acting(Domain<D>& domain) : domain_(domain), surfaces_(domain.surfaces) {
+    for (const ActingOnHost<D>& one : surfaces_.on_hosts) surfaces_.place_on_hosts[one.host] = 0;
+    surfaces_.on_hosts.clear();
+    surfaces_.on_bodies.clear();
+  }
+  /// To a point of an own part at d from its host; d of `rub`: to the place where it acts.
+  void push(std::uint64_t order, std::uint32_t point, const Vec<double, D>& force) {
+    const ContactPoint<D>& at = surfaces_.points[point];
+    if (ActingOnBody* const body = body_of(order, at)) {
+      body->push += in_space<D>(force);
+      body->moment_of_push += cross(in_space<D>(surfaces_.places[point]), in_space<D>(force));
+      return;
+    }
+    on(at.host).push.add(force, at.offset);
+  }
+  void rub(std::uint64_t order, std::uint32_t point, const Vec<double, D>& force,
+           const Vec<double, D>& reach, const Vec<double, D>& place) {
+    const ContactPoint<D>& at = surfaces_.points[point];
+    if (ActingOnBody* const body = body_of(order, at)) {
+      body->rub += in_space<D>(force);
+      body->moment_of_rub += cross(in_space<D>(place), in_space<D>(force));
+      return;
+    }
+    on(at.host).rub.add(force, reach);
+  }
+  /// To whatever point.
+  void give(const GivenToPoint<D>& given) {
+    push(given.order, given.point, given.push);
+    if (given.rubs)
+      rub(given.order, given.point, given.rub, reach_of(domain_, given.point, given.place),
+          given.place);
+  }
+  /// Is a point that of another rank, whose hosts it alone knows?
+  bool is_elsewhere(std::uint32_t point) const {
+    const SurfacePart<D>& part = part_of_point(point);
+    return part.foreign && !part.as_one;
+  }
+  const SurfacePart<D>& part_of_point(std::uint32_t point) const {
+    return surfaces_.parts[surfaces_.hosts[surfaces_.points[point].host].part];
+  }
+  void finish() {
+    std::ranges::sort(surfaces_.on_hosts, {}, &ActingOnHost<D>::host);
+    for (std::size_t k = 0; k < surfaces_.on_hosts.size(); ++k)
+      surfaces_.place_on_hosts[surfaces_.on_hosts[k].host] = static_cast<std::uint32_t>(k + 1);
+    // On bodies as wholes first by part, then all.
+    of_parts_ = entries_of_all(*domain_.grid.partition.comm, of_parts_);
+    std::ranges::sort(of_parts_, [](const ByPart& x, const ByPart& y) {
+      return x.on.body != y.on.body ? x.on.body < y.on.body : x.order < y.order;
+    });
+    for (const ByPart& one : of_parts_) {
+      ActingOnBody& all = acting_on_body(surfaces_.on_bodies, one.on.body);
+      all.push += one.on.push;
+      all.rub += one.on.rub;
+      all.moment_of_push += one.on.moment_of_push;
+      all.moment_of_rub += one.on.moment_of_rub;
+    }
+  }
+
+ private:
+  struct ByPart {
+    std::uint64_t order = 0;
+    ActingOnBody on;
+  };
+  ActingOnHost<D>& on(std::uint32_t host) {
+    std::uint32_t& place = surfaces_.place_on_hosts[host];
+    if (place == 0) {
+      surfaces_.on_hosts.push_back({host, {}, {}});
+      place = static_cast<std::uint32_t>(surfaces_.on_hosts.size());
+    }
+    return surfaces_.on_hosts[place - 1];
+  }
+  /// None if the point's body deforms.
+  ActingOnBody* body_of(std::uint64_t order, const ContactPoint<D>& point) {
+    const SurfacePart<D>& part = surfaces_.parts[surfaces_.hosts[point.host].part];
+    if (!part.as_one) return nullptr;
+    // Those of one part follow one another; few bodies are among them.
+    for (auto one = of_parts_.rbegin(); one != of_parts_.rend() && one->order == order; ++one)
+      if (one->on.body == part.body) return &one->on;
+    ByPart& made = of_parts_.emplace_back();
+    made.order = order;
+    made.on.body = part.body;
+    return &made.on;
+  }
+
+  Domain<D>& domain_;
+  Surfaces<D>& surfaces_;
+  std::vector<ByPart> of_parts_;
+};
+
+}  // namespace mpm

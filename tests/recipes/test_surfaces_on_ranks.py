@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Contact between surfaces on several ranks, which are threads here: the same bits.
+
+Friction, bonds and rigid bodies: `check_same_bits` of test_surfaces.py, test_bonds_of_surfaces.py.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mpm3dpp import Case, Simulation
+
+GRAINS = """
+[grid]
+dimension = DIMENSION
+cell_size = "1 mm"
+box = { lower = LOWER, upper = UPPER, walls = { y_min = "contact", x_min = "contact" } }
+[run]
+end_time = "20 ms"
+gravity = GRAVITY
+[contact]
+friction = 0.3
+restitution = RESTITUTION
+[material.soft]
+density = 1000
+strength = { elastic = { E = "1 MPa", nu = 0.3 } }
+[grains.all]
+material = "soft"
+frame = "material"
+lattice = { lower = LOWER, count = COUNT, radius = "3 mm", spacing = "6.2 mm" }
+velocity = VELOCITY
+"""
+RING = """
+[grid]
+dimension = 2
+cell_size = "1.6 mm"
+box = { lower = ["-80 mm", "-80 mm"], upper = ["80 mm", "80 mm"], walls = { x_max = "contact" } }
+[run]
+end_time = "20 ms"
+[material.rubber]
+density = 1010
+strength = { neo_hookean = { K = "121.7 MPa", G = "26.1 MPa" } }
+[body.ring]
+material = "rubber"
+frame = "material"
+shape = { ring = { centre = ["39 mm", 0], inner_radius = "30 mm", outer_radius = "40 mm" } }
+velocity = [50, 0]
+"""
+
+
+def grains(dimension: int, restitution: float) -> Case:
+    """Return balls that fall on each other, on a floor and on a wall, some in several tiles."""
+    text = GRAINS.replace("DIMENSION", str(dimension)).replace("RESTITUTION", str(restitution))
+    for word, value in {
+        "LOWER": [0, 0, 0],
+        "UPPER": [0.04, 0.04, 0.04],
+        "GRAVITY": [0, -50, 0],
+        "VELOCITY": [-1, -2, 1],
+    }.items():
+        text = text.replace(f"= {word}", f"= {value[:dimension]}")
+    return Case.from_text(text.replace("COUNT", str([4, 3] if dimension == 2 else [3, 2, 2])))
+
+
+def after(case: Case, steps: int, ranks: int) -> tuple[Simulation, list[bytes]]:
+    """Return what all columns, the history, sums of bodies and pairs are after so many steps."""
+    simulation = Simulation(case, threads=1, ranks=ranks)
+    simulation.advance(steps)
+    core = simulation.core
+    found = [core.history(), core.part_sums()[0], core.part_sums()[1]]
+    found += [core.column(b, one.name) for b in range(core.body_count) for one in core.columns(b)]
+    found += [[*one.force, *one.impulse, one.friction_work] for one in core.contact_pairs()]
+    return simulation, [np.array(one).tobytes() for one in found]
+
+
+@pytest.mark.parametrize("restitution", [1.0, 0.5])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_grains(dimension: int, restitution: float) -> None:
+    case, steps = grains(dimension, restitution), 300 if dimension == 2 else 80
+    one, found = after(case, steps, 1)
+    assert len(one.core.contact_pairs()) > 5
+    for ranks in (2, 5):
+        assert after(case, steps, ranks)[1] == found
+
+
+def test_a_ring_that_touches_itself() -> None:
+    """Squeezed by a wall that it hits at 50 m/s until its inner faces meet."""
+    case, steps = Case.from_text(RING), 1100
+    one, found = after(case, steps, 1)
+    places, start = (one.column("ring", name) for name in ("position", "reference_position"))
+    inner = np.hypot(start[:, 0] - 0.039, start[:, 1]) < 0.031
+    near = inner & (np.abs(places[:, 1]) < 1e-3)
+    left = places[near & (start[:, 0] < 0.039), 0].max()
+    right = places[near & (start[:, 0] > 0.039), 0].min()
+    assert 0.0 < right - left < 1e-3
+    for ranks in (2, 3):
+        assert after(case, steps, ranks)[1] == found
