@@ -46,7 +46,12 @@ def two_bars(
     scene = line_of_bars(
         scheme, dimension, basis, cells, [LENGTH] * 2, [speed, 0.0], factor, 0.0, points
     )
-    area = (2 * LENGTH / cells) ** (dimension - 1)
+    return two_bars_figures(scene, cells, speed)
+
+
+def two_bars_figures(scene: Scene, cells: int, speed: float) -> list[Figure]:
+    """Let the bars of E2 meet and part, and return the figures."""
+    area = (2 * LENGTH / cells) ** (scene.dimension - 1)
     said = scene.run(
         2.6 * PASSAGE,
         lambda s: [s.time, -s.impulse()[0], *(s.mean_velocity(k)[0] for k in (0, 1))],
@@ -70,11 +75,14 @@ def unequal_bars(
     offsets: Sequence[float] = (0.0, 0.25, 0.5, 0.75), speed: float = 1.0,
 ) -> list[Figure]:  # fmt: skip
     """E2b: the second bar twice as long; the worst over offsets of the contact within a cell."""
+    row = scheme, dimension, basis, cells, [LENGTH, 2 * LENGTH], [speed, 0.0], factor
+    return unequal_bars_figures({offset: line_of_bars(*row, offset) for offset in offsets}, speed)
+
+
+def unequal_bars_figures(scenes: dict[float, Scene], speed: float) -> list[Figure]:
+    """Let the bars of E2b part at each offset [cells], and return the worst figures of all."""
     first, second, energy = [], [], []
-    for offset in offsets:
-        scene = line_of_bars(
-            scheme, dimension, basis, cells, [LENGTH, 2 * LENGTH], [speed, 0.0], factor, offset
-        )
+    for scene in scenes.values():
         scene.run(4.6 * PASSAGE)
         first.append(scene.mean_velocity(0)[0] / speed)
         second.append(scene.mean_velocity(1)[0] / speed)
@@ -83,7 +91,7 @@ def unequal_bars(
         energy.append(inside[-1] / inside[0])
     worst = max(second, key=lambda v: abs(v - 0.5))
     return [
-        judge("E2b", "second bar's mean velocity over v", worst, remark=f"offsets {offsets} cells"),
+        judge("E2b", "second bar's mean velocity over v", worst, remark=f"offsets {tuple(scenes)} cells"),
         judge("E2b", "first bar's velocity over v", max(first, key=abs)),
         judge("E2b", "energy after over before", max(energy, key=lambda e: abs(e - 1.0))),
     ]
@@ -97,9 +105,14 @@ def rod_energy(
     scene = line_of_bars(
         scheme, dimension, basis, cells, [LENGTH] * 2, [speed / 2, -speed / 2], factor
     )
+    return rod_figures(scene)
+
+
+def rod_figures(scene: Scene) -> list[Figure]:
+    """Let two equal rods meet and part, and return the figures."""
     scene.run(2.6 * PASSAGE)
     kinetic = scene.history()["kinetic"]
-    mass = RHO * LENGTH * (2 * LENGTH / cells) ** (dimension - 1)
+    mass = scene.core.total_mass / 2
     bulk = sum(mass * scene.mean_velocity(k)[0] ** 2 / 2 for k in (0, 1))
     return [
         judge("rod", "kinetic energy after over before", kinetic[-1] / kinetic[0],
@@ -115,6 +128,11 @@ def five_bars(
     scene = line_of_bars(
         scheme, dimension, basis, cells, [LENGTH] * 5, [speed, 0.0, 0.0, 0.0, 0.0], factor
     )
+    return five_bars_figures(scene, speed)
+
+
+def five_bars_figures(scene: Scene, speed: float) -> list[Figure]:
+    """Let a wave pass five bars, and return the figures."""
     before = scene.core.total_mass / 5 * speed
     scene.run(6.0 * PASSAGE)
     v = [scene.mean_velocity(k)[0] / speed for k in range(5)]

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -85,13 +86,18 @@ def column(
     zero = _core.TimeFunction(0.0)
     speed = _core.TimeFunction(SPEED)
     scene.core.set_motion(plate, [speed, zero, zero], [zero] * 3, [0.0, 0.0, 0.0])
+    return driven(scene.start(), until), scene
+
+
+def driven(scene: Scene, until: float) -> Array:
+    """Run to a time [s]; return rows of time, velocities of the discs, bodies 0 to 9, and impulse."""
     impulse = scene.core.history_columns.index("motion_impulse_x")
 
     def watch(s: Scene) -> list[float]:
         speeds = [s.mean_velocity(k)[0] for k in range(DISCS)]
         return [s.time, *speeds, s.rows[-1][-1, impulse]]
 
-    return scene.start().run(until, watch, 5), scene
+    return scene.run(until, watch, 5)
 
 
 def disc_column(
@@ -99,11 +105,16 @@ def disc_column(
 ) -> list[Figure]:
     """C6: the wave's speed, times of arrival and force, and the velocities that it leaves."""
     assert dimension == 2
+    return chain_figures(lambda until: column(scheme, basis, cells, until, factor))
+
+
+def chain_figures(of: Callable[[float], tuple[Array, Scene]]) -> list[Figure]:
+    """Return the figures of a column that is driven until a time [s]."""
     times = np.linspace(0.0, 0.03, 6001)
     velocities, piston = chain_of_masses(times)
     arrivals = [_arrival(times, v) for v in velocities.T[:9]]
     # So long that a wave as slow as is tolerated arrives.
-    said, scene = column(scheme, basis, cells, 1.1 * arrivals[8], factor)
+    said, scene = of(1.1 * arrivals[8])
     ours = [_arrival(said[:, 0], v) for v in said.T[1:10]]
     figures = [
         judge("C6", f"arrival at disc {k}, over the chain's", ours[k - 1] / arrivals[k - 1])

@@ -12,6 +12,7 @@ from .points import block
 from .scene import Scene, slope
 
 RHO, LENGTH, E, SPEED = 1.0, 25.0, 100.0, 0.1
+G, SOFT = 9.81, 1000.0  # gravity [m/s^2] and density [kg/m^3] of the column
 
 
 def vibration(
@@ -28,10 +29,14 @@ def vibration(
     v = np.zeros_like(x)
     v[:, 0] = SPEED * np.sin(np.pi * x[:, 0] / (2 * LENGTH))
     scene.body(scene.material(RHO, "elastic", E=E, nu=0.0), x, v, volume)
-    scene.start().run(101.0)
+    return vibration_figures(scene.start(), math.prod(wide))
+
+
+def vibration_figures(scene: Scene, area: float) -> list[Figure]:
+    """Let the bar of E1 vibrate ten times, and return its figures; `area` across it [m^2]."""
+    scene.run(101.0)
     h_ = scene.history()
     t, momentum = h_["time"], h_["momentum_x"] / scene.core.total_mass
-    area = math.prod(wide)
     down = np.flatnonzero((momentum[:-1] > 0) & (momentum[1:] <= 0))
     share = momentum[down] / (momentum[down] - momentum[down + 1])
     zeros = t[down] + share * (t[down + 1] - t[down])
@@ -50,12 +55,12 @@ def under_gravity(
     scheme: str, dimension: int, basis: str, cells: int = 25, factor: float = 0.2
 ) -> list[Figure]:
     """E11: column of height 1 on a fixed floor when gravity is suddenly on; one period."""
-    h, g, rho, period = 1.0 / cells, 9.81, 1000.0, 4.0 / math.sqrt(1e6 / 1000.0)
+    h = 1.0 / cells
     up = dimension - 1
     lower, upper = [0.0] * dimension, [2 * h] * dimension
     upper[up] = 1.0
     gravity = [0.0] * dimension
-    gravity[up] = -g
+    gravity[up] = -G
     walls = ["slip"] * (2 * dimension)
     walls[-2:] = ["fixed", "free"]
     scene = Scene(
@@ -63,14 +68,20 @@ def under_gravity(
         box=(lower, [*upper[:-1], 1.0 + 2 * h]), walls=walls, gravity=gravity,
     )  # fmt: skip
     x0, volume = block(lower, upper, h / 2)
-    a = scene.body(scene.material(rho, "elastic", E=1e6, nu=0.0), x0, [0.0] * 3, volume)
+    scene.body(scene.material(SOFT, "elastic", E=1e6, nu=0.0), x0, [0.0] * 3, volume)
+    return column_figures(scene.start(), cells)
+
+
+def column_figures(scene: Scene, cells: int) -> list[Figure]:
+    """Let the column of E11, body 0, swing twice, and return its figures."""
+    h, up, period = 1.0 / cells, scene.dimension - 1, 4.0 / math.sqrt(1e6 / SOFT)
+    x0 = scene.x(0)
     top = x0[:, up] > 1.0 - 0.3 * h
 
     def watch(s: Scene) -> list[float]:
-        sigma = s.stress(a)[:, [0, 1, 2][up]]
-        return [s.time, (s.x(a) - x0)[top, up].mean(), *sigma]
+        return [s.time, (s.x(0) - x0)[top, up].mean(), *s.stress(0)[:, up]]
 
-    said = scene.start().run(2.2 * period, watch, 1)
+    said = scene.run(2.2 * period, watch, 1)
     t, moved, sigma = said[:, 0], -said[:, 1], said[:, 2:]
     cycles = t <= 2 * period
     mean = np.trapezoid(sigma[cycles], t[cycles], axis=0) / (t[cycles][-1] - t[0])
@@ -78,7 +89,7 @@ def under_gravity(
     # stress at its centre.
     cell = np.floor(x0[:, up] / h).astype(int)
     ours = np.bincount(cell, mean) / np.bincount(cell)
-    error = np.abs(ours + rho * g * (1.0 - (np.arange(cells) + 0.5) * h)).max() / (rho * g)
+    error = np.abs(ours + SOFT * G * (1.0 - (np.arange(cells) + 0.5) * h)).max() / (SOFT * G)
     return [
         judge("E11", "period", _middle(t, moved, period)),
         judge("E11", "largest displacement of the top", moved[cycles].max()),

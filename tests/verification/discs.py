@@ -29,7 +29,12 @@ def sulsky_discs(
     for centre, speed in ((0.2, 0.1), (0.8, -0.1)):
         x, volume = annulus([centre] * 2, 0.0, 0.2, h / points)
         scene.body(material, x, [speed] * 2, volume)
-    said = scene.start().run(
+    return sulsky_figures(scene.start(), model)
+
+
+def sulsky_figures(scene: Scene, model: str) -> list[Figure]:
+    """Let the discs of E5 meet and part, and return the figures."""
+    said = scene.run(
         3.4, lambda s: [s.time, np.abs(s.impulse()).sum(), s.mean_velocity(0).mean()], 2
     )
     kinetic = scene.history()["kinetic"]
@@ -58,12 +63,17 @@ def rings(
     for centre, speed in ((0.05, 30.0), (0.15, -30.0)):
         x, volume = annulus([centre, 0.05], 0.03, 0.04, h / points)
         scene.body(material, x, [speed, 0.0], volume)
+    return ring_figures(scene.start(), h / points)
+
+
+def ring_figures(scene: Scene, spacing: float) -> list[Figure]:
+    """Let the rings of E6 meet and part, and return the figures; `spacing` of their points [m]."""
 
     def watch(s: Scene) -> list[float]:
         x = s.x(0)[:, 0]
         return [s.time, abs(s.impulse()[0]), x.max() - x.min(), s.mean_velocity(0)[0]]
 
-    said = scene.start().run(3.6e-3, watch, 10)
+    said = scene.run(3.6e-3, watch, 10)
     history, pair = scene.history(), scene.core.contact_pairs()[0]
     kinetic = history["kinetic"]
     momentum = np.abs(history["momentum_x"]).max() / (scene.core.total_mass / 2 * 30.0)
@@ -71,8 +81,8 @@ def rings(
         judge("E6", "contact lasts", on_time(said[:, 0], said[:, 1])[1] - pair.first_time),
         judge("E6", "rebound", -said[-1, 3]),
         judge("E6", "least kinetic energy", kinetic.min() / kinetic[0]),
-        judge("E6", "least height", 1e3 * (said[:, 2].min() + h / points)),
-        report("gap at the first contact", pair.first_gap / h, "cells"),
+        judge("E6", "least height", 1e3 * (said[:, 2].min() + spacing)),
+        report("gap at the first contact", pair.first_gap / scene.cell_size, "cells"),
         scene.energy_figure(),
         report("momentum, largest change over one ring's", momentum),
     ]

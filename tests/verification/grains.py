@@ -52,7 +52,12 @@ def _bounce(scheme: str, basis: str, cells: int, speed: float, factor: float) ->
     for side in (-1.0, 1.0):
         x, volume = ball([side * away, 0.0, 0.0], RADIUS, cell / 2)
         scene.body(material, x, [-side * speed, 0.0, 0.0], volume)
-    said = scene.start().run(
+    return bounced(scene.start(), speed)
+
+
+def bounced(scene: Scene, speed: float) -> list[float]:
+    """Let the first sphere hit at a speed [m/s] and part; return what `bounce` does."""
+    said = scene.run(
         1.3 * ANSWER_LASTS[speed],
         lambda s: [s.time, abs(s.impulse()[0]), -_centre(s), s.mean_velocity(0)[0]],
         4,
@@ -88,7 +93,12 @@ def hertz_chain(
     for k in range(5):
         x, volume = ball([2 * RADIUS * (k - 2), 0.0, 0.0], RADIUS, cell / 2)
         scene.body(material, x, [1.0 if k == 0 else 0.0, 0.0, 0.0], volume)
-    scene.start().run(0.06)
+    return chain_figures(scene.start())
+
+
+def chain_figures(scene: Scene) -> list[Figure]:
+    """Let the first of five spheres hit the others, and return the figures."""
+    scene.run(0.06)
     speeds = [scene.mean_velocity(k)[0] for k in range(5)]
     figures = [judge("C2", f"final velocity of sphere {k + 1}", v) for k, v in enumerate(speeds)]
     return [*figures, scene.energy_figure()]

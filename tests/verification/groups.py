@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -27,7 +27,12 @@ def three_discs(
         # A fill that turns with the disc, so that only the grid breaks the symmetry.
         x, volume = _turned_ball(0.3 * e, 0.2, h / 2, e)
         scene.body(material, x, -speed * e, volume)
-    scene.start().run(3.6)
+    return three_figures(scene.start(), outward, speed)
+
+
+def three_figures(scene: Scene, outward: Array, speed: float) -> list[Figure]:
+    """Let three discs meet that come along `outward`, (3, D), and return the figures."""
+    scene.run(3.6)
     v = np.array([scene.mean_velocity(k) for k in range(3)])
     radial = (v * outward).sum(1)
     off = np.degrees(np.arccos(radial / np.linalg.norm(v, axis=1)))
@@ -54,22 +59,32 @@ def crowd(
     friction: float = 0.2, speed: float = 0.05,
 ) -> tuple[Scene, Array, Array]:  # fmt: skip
     """Discs or spheres of `cells` radii on a lattice with random velocities, in a given order."""
-    random = np.random.default_rng(20100101)
-    side = math.ceil(bodies ** (1 / dimension))
-    centres, _ = block([0.0] * dimension, [2.1 * side] * dimension, 2.1)
-    velocities = speed * random.uniform(-1.0, 1.0, (bodies, dimension))
-    velocities -= 0.5 * speed * (centres[:bodies] / (1.05 * side) - 1.0)  # Towards the middle.
+    centres, velocities = places(dimension, bodies, speed)
     scene = Scene(scheme, dimension, basis, 1.0 / cells, factor=factor, friction=friction)
     material = scene.material(1.0, "elastic", E=1.0, nu=0.3)
     order = list(range(bodies)) if order is None else list(order)
     for k in order:
         x, volume = ball(centres[k], 1.0, 0.5 / cells)
         scene.body(material, x, velocities[k], volume)
-    scene.start()
+    return crowded(scene.start(), order, steps)
+
+
+def places(dimension: int, bodies: int, speed: float) -> tuple[Array, Array]:
+    """Return centres [m] and velocities [m/s] of bodies of radius 1, (bodies, D)."""
+    random = np.random.default_rng(20100101)
+    side = math.ceil(bodies ** (1 / dimension))
+    centres, _ = block([0.0] * dimension, [2.1 * side] * dimension, 2.1)
+    velocities = speed * random.uniform(-1.0, 1.0, (bodies, dimension))
+    # Towards the middle.
+    return centres[:bodies], velocities - 0.5 * speed * (centres[:bodies] / (1.05 * side) - 1.0)
+
+
+def crowded(scene: Scene, order: Sequence[int], steps: int) -> tuple[Scene, Array, Array]:
+    """Make steps; return the scene, and positions and velocities of bodies in the first order."""
     made = 0
     while made < steps:
         made += scene.step(min(1000, steps - made))
-    x, v = [None] * bodies, [None] * bodies
+    x, v = [None] * len(order), [None] * len(order)
     for number, k in enumerate(order):
         x[k], v[k] = scene.x(number), scene.v(number)
     return scene, np.array(x), np.array(v)
@@ -80,7 +95,11 @@ def many_bodies(
     cells: int = 4, factor: float = 0.25,
 ) -> list[Figure]:  # fmt: skip
     """E9b: discs with random velocities and friction."""
-    scene, _, _ = crowd(scheme, dimension, basis, bodies, steps, cells, factor)
+    return many_figures(crowd(scheme, dimension, basis, bodies, steps, cells, factor)[0])
+
+
+def many_figures(scene: Scene) -> list[Figure]:
+    """Return what many bodies that have met have kept."""
     met = scene.core.contact_summary()["bodies_per_node_max"]
     pairs = len(scene.core.contact_pairs())
     first = scene.history()["kinetic"][0]
@@ -99,6 +118,14 @@ def renumbering(
     order = np.random.default_rng(1).permutation(bodies)
     _, x, v = crowd(scheme, dimension, basis, bodies, steps, cells, factor)
     _, y, w = crowd(scheme, dimension, basis, bodies, steps, cells, factor, order)
+    return renumbering_figures((x, v), (y, w), cells)
+
+
+def renumbering_figures(
+    first: tuple[Array, Array], second: tuple[Array, Array], cells: int
+) -> list[Figure]:
+    """Return by how much positions and velocities of two runs differ; `cells` of a metre."""
+    (x, v), (y, w) = first, second
     return [
         judge("E9b discs", "renumbered: largest difference of position over the cell",
               np.abs(x - y).max() * cells),
@@ -119,9 +146,10 @@ def offset_spheres(
     offsets: Sequence[str] = ("0", "0.25", "0.5", "0.75"), factor: float = 0.25,
 ) -> list[Figure]:  # fmt: skip
     """E10: a smooth sphere meets an equal one at rest; offset b over 2R."""
-    radius, turn, fast, remark = 0.1, 0.0, 0.0, []
+    radius = 0.1
     h = radius / cells
-    for b in offsets:
+
+    def scene_of(b: str) -> Scene:
         sine = float(b)
         apart = 2 * radius * np.array([math.sqrt(1 - sine**2), sine, 0.0])
         scene = Scene(scheme, dimension, basis, h, factor=factor)
@@ -129,7 +157,19 @@ def offset_spheres(
         for centre, v in (([0.0] * 3, speed), (apart + np.array([0.5 * h, 0.0, 0.0]), 0.0)):
             x, volume = ball(centre, radius, h / 2)
             scene.body(material, x, [v, 0.0, 0.0], volume)
-        scene.start().run(0.5 * h / speed + 0.03)
+        return scene.start()
+
+    return offset_figures(scene_of, offsets, speed, 0.5 * h / speed + 0.03)
+
+
+def offset_figures(
+    of: Callable[[str], Scene], offsets: Sequence[str], speed: float, until: float
+) -> list[Figure]:
+    """Let spheres meet at offsets b over 2R until a time [s]; return the worst figures of all."""
+    turn, fast, remark = 0.0, 0.0, []
+    for b in offsets:
+        scene = of(b)
+        scene.run(until)
         expected = np.array(reference()["E10"]["b"][b]).reshape(2, 2)
         for body in (0, 1):
             got, want = scene.mean_velocity(body)[:2] / speed, expected[body]
@@ -165,13 +205,16 @@ def oblique_impact(
     top, _ = block([0.0, *across[0], 0.0], [1.0, *across[1], 1.0], h / 2)
     scene.body(material, low, [0.0] * 3, volume)
     motion = [slip, *[0.0] * (dimension - 2), -speed]
-    b = scene.body(material, top, motion, volume)
-    scene.start()
-    mass = 1000.0 * volume * len(top)
-    before = mass * np.array(motion)
+    scene.body(material, top, motion, volume)
+    return oblique_figures(scene.start(), mu, slip, speed)
+
+
+def oblique_figures(scene: Scene, mu: float, slip: float, speed: float) -> list[Figure]:
+    """Let the block, body 1, of 1 m a side hit the other, body 0, and return the figures."""
+    motion = np.array([slip, *[0.0] * (scene.dimension - 2), -speed])
     scene.run(0.12)
-    gained = mass * scene.mean_velocity(b) - before
-    impulse = -scene.impulse()[:dimension]
+    gained = 1000.0 * (scene.mean_velocity(1) - motion)  # The block has 1000 kg.
+    impulse = -scene.impulse()[: scene.dimension]
     ratio = np.linalg.norm(impulse[:-1]) / abs(impulse[-1]) / mu
     name = "sliding" if slip > mu * 4 * speed else "sticking"
     h_ = scene.history()

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from .figure import Figure, judge, report
 from .points import ball, block
@@ -51,13 +52,18 @@ def slide(
     x0, volume = block([start, *side[0], 0.0], [start + 0.4, *side[1], 0.2], h / 2)
     a = scene.body(material, x0, [0.0] * 3, volume)
     scene.start().settle(settle, pull, full)
-    begin, x0 = scene.time, scene.x(a)[:, 0].mean()
+    return (*slid(scene, a, duration), scene)
+
+
+def slid(scene: Scene, block: int, duration: float) -> tuple[Array, Array, Array]:
+    """Let a block slide; return times, displacements and velocities."""
+    begin, x0 = scene.time, scene.x(block)[:, 0].mean()
     said = scene.run(
         begin + duration,
-        lambda s: [s.time - begin, s.x(a)[:, 0].mean() - x0, s.mean_velocity(a)[0]],
+        lambda s: [s.time - begin, s.x(block)[:, 0].mean() - x0, s.mean_velocity(block)[0]],
         20,
     )
-    return said[:, 0], said[:, 1], said[:, 2], scene
+    return said[:, 0], said[:, 1], said[:, 2]
 
 
 def sliding_block(
@@ -65,11 +71,15 @@ def sliding_block(
     factor: float = 0.25,
 ) -> list[Figure]:  # fmt: skip
     """E8: acceleration of sliding blocks."""
+    more = {"across": across, "normal": normal, "factor": factor}
+    return sliding_figures(lambda *about: slide(scheme, dimension, basis, *about, **more))
+
+
+def sliding_figures(of: Callable[[float, float], tuple[Array, ...]]) -> list[Figure]:
+    """Return E8's figures of what slides at an angle [degrees] with a friction."""
     figures = []
     for angle, mu in ((30, 0.1), (30, 0.3), (45, 0.2)):
-        t, _, v, scene = slide(
-            scheme, dimension, basis, angle, mu, across=across, normal=normal, factor=factor
-        )
+        t, _, v, scene = of(angle, mu)
         pair = scene.core.contact_pairs()[0]
         figures.append(judge("E8", f"{angle} degrees, mu {mu}", slope(t, v),
                              remark=f"friction work {pair.friction_work:.4g} J"))  # fmt: skip
@@ -88,6 +98,11 @@ def sticking_block(
 ) -> list[Figure]:  # fmt: skip
     """E8: a block that must stay where it is."""
     t, u, v, _ = slide(scheme, dimension, basis, 20, 0.5, duration, across, normal, factor)
+    return sticking_figures(t, u, v)
+
+
+def sticking_figures(t: Array, u: Array, v: Array) -> list[Figure]:
+    """Return E8's figures of a block at 20 degrees: of times, displacements and velocities."""
     free = 0.5 * G * math.sin(math.radians(20)) * t[-1] ** 2
     name = "20 degrees, mu 0.5 sticks: drift in 1 s over g sin t^2/2"
     return [judge("E8", name, u[-1] / free, remark=f"velocity at the end {v[-1]:.3g} m/s")]
@@ -109,13 +124,18 @@ def roll(
     x, volume = ball(centre, radius, h / 2)
     a = scene.body(material, x, [0.0] * 3, volume)
     scene.start().settle(0.2, pull, full)
+    return rolled(scene, a, radius, duration)
+
+
+def rolled(scene: Scene, body: int, radius: float, duration: float) -> tuple[float, float]:
+    """Let a disc or sphere roll; return a and R alpha [m/s^2]."""
     begin = scene.time
 
     def watch(s: Scene) -> list[float]:
-        x, v = s.x(a)[:, [0, -1]], s.v(a)[:, [0, -1]]
+        x, v = s.x(body)[:, [0, -1]], s.v(body)[:, [0, -1]]
         x, v = x - x.mean(0), v - v.mean(0)
         turn = (x[:, 1] * v[:, 0] - x[:, 0] * v[:, 1]).sum() / (x * x).sum()
-        return [s.time - begin, s.mean_velocity(a)[0], turn * radius]
+        return [s.time - begin, s.mean_velocity(body)[0], turn * radius]
 
     said = scene.run(begin + duration, watch, 20)
     return slope(said[:, 0], said[:, 1]), slope(said[:, 0], said[:, 2])
@@ -126,10 +146,19 @@ def rolling(
     factor: float = 0.25, modulus: float = 1e6,
 ) -> list[Figure]:  # fmt: skip
     """E9: a disc (2D) or sphere (3D) that sticks at 30 degrees and slips at 45."""
-    what = "disc" if dimension == 2 else "sphere"
     more = {"cells": cells, "normal": normal, "factor": factor, "modulus": modulus}
-    stick, stick_turn = roll(scheme, dimension, basis, 30, 0.3, **more)
-    slip, slip_turn = roll(scheme, dimension, basis, 45, 0.1, **more)
+    return rolling_figures(
+        "disc" if dimension == 2 else "sphere",
+        lambda *about: roll(scheme, dimension, basis, *about, **more),
+    )
+
+
+def rolling_figures(
+    what: str, of: Callable[[float, float], tuple[float, float]]
+) -> list[Figure]:
+    """Return E9's figures of what rolls at an angle [degrees] with a friction."""
+    stick, stick_turn = of(30, 0.3)
+    slip, slip_turn = of(45, 0.1)
     return [
         judge("E9", f"{what}, 30 degrees, mu 0.3 sticks", stick),
         report(f"{what}, 30 degrees: R alpha over a", stick_turn / stick),

@@ -10,13 +10,16 @@ from mpm3dpp import Case, _core
 from mpm3dpp.case import choices
 
 DEFAULT = "default"
+MATERIAL = "material"
+"""The default, of bodies on nodes of their own."""
 
 
 @dataclass(frozen=True)
 class Numerics:
     """What a basis' name stands for: "gimp", "quadratic_bspline+apic~impulses", "gimp+xpic=4@0.5".
 
-    "default" stands for what a case gets that says nothing, but for the scheme.
+    "default" stands for what a case gets that says nothing, but for the scheme; "material" for the
+    same of bodies with `frame = "material"`, as far as they deform.
 
     Attributes:
         basis: its name in the core.
@@ -24,6 +27,7 @@ class Numerics:
         number: of the transfer, where the name gives one.
         response: `contact.response` of the core, where the name gives one.
         factor: of the critical time step, where the name gives one: instead of the problem's.
+        frame: of bodies that deform, where the name gives one.
     """
 
     basis: str
@@ -31,15 +35,17 @@ class Numerics:
     number: float | None = None
     factor: float | None = None
     response: str = ""
+    frame: str = ""
 
     @classmethod
     def named(cls, name: str) -> Numerics:
         """Take a name apart."""
         name, _, factor = name.partition("@")
         name, _, response = name.partition("~")
-        if name == DEFAULT:
+        if name in (DEFAULT, MATERIAL):
             cfl = float(factor) if factor else choices.AFFINE["cfl"]
-            return cls(choices.BASIS, choices.TRANSFER, None, cfl, response or choices.RESPONSE)
+            response, frame = response or choices.RESPONSE, name if name == MATERIAL else ""
+            return cls(choices.BASIS, choices.TRANSFER, None, cfl, response, frame)
         basis, _, transfer = name.partition("+")
         word, _, number = (transfer or "flip").partition("=")
         return cls(
@@ -63,9 +69,13 @@ class Numerics:
         case.run.cfl = self.factor or own
         if self.response:
             case.contact.response = self.response
+        for body in case.body.values():
+            if self.frame and body.motion is None:
+                body.frame, body.particles_per_cell = self.frame, None  # By default of the frame.
 
     def give_core(self, settings: _core.Settings, factor: float) -> None:
         """Give settings of the core this basis and transfer, and this factor or else `factor`."""
+        assert not self.frame  # A body has it, which the core's settings do not know.
         settings.grid.basis, settings.run.transfer.word = self.basis, self.transfer
         if self.number is not None:
             table = self.table()

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -58,11 +59,11 @@ def turning(
     for k in range(1, STOPS + 1):
         scene.run(SETTLE * k / STOPS)
         scene.core.set_velocity(disc, np.zeros_like(scene.v(disc)))
-    said = scene.run(SETTLE + duration, lambda s: [s.time - SETTLE, -_spin(s, disc)], 5)
+    said = scene.run(SETTLE + duration, lambda s: [s.time - SETTLE, -spin_of(s, disc)], 5)
     return said, scene
 
 
-def _spin(scene: Scene, body: int) -> float:
+def spin_of(scene: Scene, body: int) -> float:
     """Angular momentum about the mass centre over the moment of inertia [rad/s]."""
     m, x, v = scene.core.column(body, "mass"), scene.x(body), scene.v(body)
     x, v = x - (m * x).sum(0) / m.sum(), v - (m * v).sum(0) / m.sum()
@@ -74,8 +75,13 @@ def rolling_on_discs(
 ) -> list[Figure]:
     """C5: a disc of `cells` a radius on supports that turn up slowly, and that turn at once."""
     assert dimension == 2
+    return turning_figures(lambda *about: turning(scheme, basis, cells, *about, factor))
+
+
+def turning_figures(of: Callable[[float, float], tuple[Array, Scene]]) -> list[Figure]:
+    """Return the figures of what turns with a ramp [s], or 0, for a duration [s]."""
     revolution, ramp = 2 * math.pi / SPIN, 0.4
-    said, scene = turning(scheme, basis, cells, ramp, ramp + revolution, factor)
+    said, scene = of(ramp, ramp + revolution)
     t, spin = said.T
     rising, steady = (t > 0.1 * ramp) & (t < 0.9 * ramp), t > ramp
     rate = slope(t[rising], spin[rising])
@@ -88,7 +94,7 @@ def rolling_on_discs(
         judge("C5", "energy residual over the motions' work", _residual(scene)),
     ]  # fmt: skip
     ends = SPIN / slip_rate()  # [s] it slips so long
-    said, scene = turning(scheme, basis, cells, 0.0, 1.5 * ends + revolution, factor)
+    said, scene = of(0.0, 1.5 * ends + revolution)
     t, spin = said.T
     slips, steady = (t > 0.1 * ends) & (t < 0.9 * ends), t > 1.5 * ends
     return [

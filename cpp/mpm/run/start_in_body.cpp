@@ -175,9 +175,6 @@ void check_in_body(const Simulation<D>& simulation) {
               "walls of the box that absorb yet: leave them out, or give frame = \"updated\"");
   const bool holds =
       std::ranges::any_of(s.grid.walls, [](Wall w) { return w == Wall::slip || w == Wall::fixed; });
-  check_frame(!box || !holds || domain.bodies.size() == 1 || !s.contact.enabled || s.contact.bonded,
-              "walls of the box that are slip or fixed where bodies touch each other yet: give "
-              "\"contact\", or contact.enabled = false");
   check_frame(!box || !holds || !restitution_takes(s.contact),
               "walls of the box that are slip or fixed and a restitution yet: leave one out");
   check_frame(!s.grid.outflow, "a region that particles leave: give frame = \"updated\"");

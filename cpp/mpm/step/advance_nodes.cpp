@@ -124,8 +124,9 @@ DampedWork advance_damped_block(const Domain<D>& domain, const Patch<D>& patch,
 template <int D>
 void add_impulses_of_holding(const Domain<D>& domain, const Patch<D>& patch,
                              const NodeBlock<D>& block, const double* own, const Reaction<D>& to) {
+  const double acts = time_of_forces(domain, patch);
   add_holding(domain.grid, patch, own, to, [&](int node) {
-    return -domain.time_step * (block.vector(node, force_at) + block.mass()[node] * domain.gravity);
+    return -acts * (block.vector(node, force_at) + block.mass()[node] * domain.gravity);
   });
 }
 
@@ -241,7 +242,8 @@ void advance_nodes(Domain<D>& domain) {
     sums.gravity_first = dt * (done.gravity_first - weight_first);
     sums.gravity_second = 0.5 * halves * dt * (done.gravity_second - weight_second);
     if (patch.keeps) add_work_of_surfaces(domain, p);
-    if (patch.keeps) count_kept_nodes(domain, move_kept_nodes(domain, block, own, sums), sums);
+    if (patch.keeps)
+      count_kept_nodes(domain, move_kept_nodes(domain, patch, block, own, sums), sums);
   });
 }
 

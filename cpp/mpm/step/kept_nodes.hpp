@@ -38,15 +38,23 @@ Vector3 place_of_kept(const TileGrid<D>& grid, const Patch<D>& patch, const Node
   return place_of(grid, patch, node) + in_space<D>(u);
 }
 
-/// f(m, x, v) for the nodes of a patch that it owns: mass [kg], place [m], velocity [m/s].
+/// f(m, x, v) for the nodes of a patch that it owns: mass [kg], place [m], velocity [m/s]. The mass
+/// of a node beyond a wall, which its image has too, moves with the node.
 template <int D, class F>
 void for_each_kept_node(TileGrid<D>& grid, const Patch<D>& patch, F&& f) {
   const NodeBlock<D> block = grid.block(patch);
+  const auto node = [&](double m, int n) {
+    if (m != 0.0)
+      f(m, place_of_kept(grid, patch, block, n), in_space<D>(block.vector(n, velocity_at)));
+  };
   double own[BlockShape<D>::nodes_max];
   own_nodes(grid, patch, own);
-  for (int n = 0; n < block.count; ++n)
-    if (const double m = own[n] * block.records[n][mass_at]; m > 0.0)
-      f(m, place_of_kept(grid, patch, block, n), in_space<D>(block.vector(n, velocity_at)));
+  for (int n = 0; n < block.count; ++n) node(own[n] * block.records[n][mass_at], n);
+  for_each_ghost_node(grid, patch, [&](int beyond, int image, const WallImage<D>&) {
+    if (!patch.counts(beyond)) return;
+    node(block.records[beyond][mass_at], beyond);
+    node(-block.records[beyond][mass_at], image);
+  });
 }
 
 /// What walls hold of vectors of a patch's nodes: those on them, and those beyond by their images.
@@ -73,8 +81,8 @@ double time_of_forces(const Domain<D>& domain, const Patch<D>& patch) {
 /// The nodes of a block go with the velocities that they have by now, (M3); kinetic energy and
 /// momentum in the middle of the step. Returns by how much the first is more than it was [J].
 template <int D>
-double move_kept_nodes(const Domain<D>& domain, const NodeBlock<D>& block, const double* own,
-                       PatchSums<D>& sums) {
+double move_kept_nodes(const Domain<D>& domain, const Patch<D>& patch, const NodeBlock<D>& block,
+                       const double* own, PatchSums<D>& sums) {
   double kinetic = 0.0, gained = 0.0;
   for (int n = 0; n < block.count; ++n) {
     const double* const numbers = block.records[n];
@@ -87,6 +95,13 @@ double move_kept_nodes(const Domain<D>& domain, const NodeBlock<D>& block, const
       sums.momentum[a] += m * v;
     }
   }
+  // The mass of nodes beyond walls is with their images, which move the other way.
+  for_each_ghost_node(domain.grid, patch, [&](int beyond, int image, const WallImage<D>&) {
+    const double m = patch.counts(beyond) ? block.records[beyond][mass_at] : 0.0;
+    for (int a = 0; a < D; ++a)
+      sums.momentum[a] +=
+          m * (block.records[beyond][velocity_at + a] - block.records[image][velocity_at + a]);
+  });
   sums.kinetic = kinetic;
   return gained;
 }

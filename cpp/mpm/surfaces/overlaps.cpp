@@ -5,6 +5,7 @@
 #include "mpm/fields/lanes.hpp"
 #include "mpm/surfaces/felt.hpp"
 #include "mpm/surfaces/law.hpp"
+#include "mpm/surfaces/mirrored.hpp"
 
 namespace mpm {
 namespace {
@@ -58,12 +59,17 @@ T in_steps(T share) {
   return (share + far) - far;
 }
 
-/// The sum of the weights of the points of another body around a point over e^(D - 1), (S3).
+/// How far off a point may be felt [m].
+template <int D>
+double felt_within(const Surfaces<D>& surfaces) {
+  return SurfacePoint<D>::reach * surfaces.spacing;
+}
+
+/// The sum of the weights of the points of another body around a place over e^(D - 1), (S3).
 template <int D>
 double sum_of_weights(const Surfaces<D>& surfaces, const SurfacePart<D>& part,
-                      const NearPoints& near) {
+                      const NearPoints& near, const Vec<double, D>& here) {
   constexpr int W = contact_lanes;
-  const Vec<double, D> here = surfaces.places[near.point];
   const Batch<W> per_face(1.0 / face_of_spacing(surfaces));
   Batch<W> sums(0.0);
   for_each_lanes<W>(part.awake.data() + near.first, near.count, [&](const auto& rows) {
@@ -79,6 +85,17 @@ double sum_of_weights(const Surfaces<D>& surfaces, const SurfacePart<D>& part,
     sums += of_valid(rows, in_steps(area * per_face * weight));
   });
   return sum(sums);
+}
+/// The same of a point, with the mirrored bodies behind walls.
+template <int D>
+double sum_of_weights(const Domain<D>& domain, const SurfacePart<D>& part, const NearPoints& near) {
+  const Surfaces<D>& surfaces = domain.surfaces;
+  double sum = 0.0;
+  for_each_image(domain.grid, surfaces.places[near.point], felt_within(surfaces),
+                 [&](const PlaceOrImage<D>& here) {
+                   sum += sum_of_weights(surfaces, part, near, here.place);
+                 });
+  return sum;
 }
 
 /// A point that overlaps another body by e - e zeta - b, with the points of this that it feels.
@@ -97,22 +114,28 @@ void add_touch_of_body(const Domain<D>& domain, SurfacePart<D>& part, const Near
                                        1.0 / domain.body_at(part.body).stiffness,
                                        1.0 / domain.body_at(near.body).stiffness);
   touch.first_felt = static_cast<std::uint32_t>(part.felt.size());
-  const Vec<double, D> here = surfaces.places[near.point];
   Vec<double, D> slopes = Vec<double, D>::zero();
-  for (std::uint32_t k = near.first; k < near.first + near.count; ++k) {
-    const std::uint32_t q = part.awake[k];
-    const Vec<double, D> way = surfaces.places[q] - here;
-    const double square = dot(way, way), weight = SurfacePoint<D>::weight(square, e);
-    if (!(weight > 0.0)) continue;
-    const double area = surfaces.points[q].area;
-    // do/dx_q = - e dzeta/dS a_q dw/dx_q
-    const double slope = -e * in.by_sum * area * share * sum * SurfacePoint<D>::slope(square, e);
-    part.felt.push_back({q, area * weight * share, slope * way});
-  }
+  for_each_image(domain.grid, surfaces.places[near.point], felt_within(surfaces),
+                 [&](const PlaceOrImage<D>& here) {
+                   for (std::uint32_t k = near.first; k < near.first + near.count; ++k) {
+                     const std::uint32_t q = part.awake[k];
+                     const Vec<double, D> way = surfaces.places[q] - here.place;
+                     const double square = dot(way, way),
+                                  weight = SurfacePoint<D>::weight(square, e);
+                     if (!(weight > 0.0)) continue;
+                     const double area = surfaces.points[q].area;
+                     // do/dx_q = - e dzeta/dS a_q dw/dx_q
+                     const double slope =
+                         -e * in.by_sum * area * share * sum * SurfacePoint<D>::slope(square, e);
+                     part.felt.push_back({q, area * weight * share, slope * way, here.mirrors});
+                   }
+                 });
   // In an order that lists have not.
   const auto felt = std::span(part.felt).subspan(touch.first_felt);
-  std::ranges::sort(felt, {}, &FeltPoint<D>::point);
-  for (const FeltPoint<D>& one : felt) slopes += one.slope;
+  std::ranges::sort(felt, [](const FeltPoint<D>& x, const FeltPoint<D>& y) {
+    return x.mirrors != y.mirrors ? x.mirrors < y.mirrors : x.point < y.point;
+  });
+  for (const FeltPoint<D>& one : felt) slopes += mirrored(one.mirrors, one.slope);
   touch.felt = static_cast<std::uint32_t>(part.felt.size()) - touch.first_felt;
   touch.slope = slopes;
   touch.arm = (-0.5 * e * in.zeta) * normalised(slopes);
@@ -122,12 +145,12 @@ void add_touch_of_body(const Domain<D>& domain, SurfacePart<D>& part, const Near
 /// f(near points, the sum of their weights) for the bodies that a point overlaps, from the first of
 /// SurfacePart::awake_of that are not before it on; `least`: of the sum.
 template <int D, class F>
-void for_each_body(const Surfaces<D>& surfaces, const SurfacePart<D>& part, std::uint32_t point,
+void for_each_body(const Domain<D>& domain, const SurfacePart<D>& part, std::uint32_t point,
                    double least, std::size_t& next, F&& f) {
   for (; next < part.awake_of.size() && part.awake_of[next].point == point; ++next) {
     const NearPoints& near = part.awake_of[next];
-    if (surfaces.moved < near.sleeps_until) continue;
-    const double sum = sum_of_weights(surfaces, part, near);
+    if (domain.surfaces.moved < near.sleeps_until) continue;
+    const double sum = sum_of_weights(domain, part, near);
     if (sum > least) f(near, sum);
   }
 }
@@ -157,7 +180,7 @@ void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part) {
                         part.touches.push_back(
                             touch_of_face(domain, part.body, c, face, overlap, back, normal));
                     });
-    for_each_body(surfaces, part, c, least, next, [&](const NearPoints& near, double sum) {
+    for_each_body(domain, part, c, least, next, [&](const NearPoints& near, double sum) {
       add_touch_of_body(domain, part, near, sum, set_back_of(surfaces, c, near.body));
     });
   }
@@ -168,7 +191,7 @@ void for_each_near_surface(const Domain<D>& domain, const SurfacePart<D>& part,
                            const std::function<void(const NearPoints&, double)>& f) {
   std::size_t next = 0;
   for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c)
-    for_each_body(domain.surfaces, part, c, 0.0, next,
+    for_each_body(domain, part, c, 0.0, next,
                   [&](const NearPoints& near, double sum) { f(near, SurfacePoint<D>(sum).zeta); });
 }
 
@@ -190,7 +213,7 @@ void set_back_overlaps(Domain<D>& domain) {
       if (!part.as_one && surfaces.points[c].area > 0.0)
         for_each_face(domain, surfaces.places[c],
                       [&](Opposite face, double overlap, const auto&) { set_back(face, overlap); });
-      for_each_body(surfaces, part, c, least, next, [&](const NearPoints& near, double sum) {
+      for_each_body(domain, part, c, least, next, [&](const NearPoints& near, double sum) {
         set_back(near.body, surfaces.spacing * (1.0 - SurfacePoint<D>(sum).zeta));
       });
     }

@@ -2,6 +2,7 @@
 
 #include "mpm/surfaces/as_one.hpp"
 #include "mpm/surfaces/law.hpp"
+#include "mpm/surfaces/mirrored.hpp"
 
 namespace mpm {
 namespace {
@@ -46,10 +47,35 @@ Vec<double, D> slip_velocity(const Domain<D>& domain, const SurfacePart<D>& part
   Vec<double, D> u = velocity_of_point(domain, touch.point, touch.reach, place);
   for (std::uint32_t k = touch.first_felt; k < touch.first_felt + touch.felt; ++k) {
     const FeltPoint<D>& felt = part.felt[k];
+    const Vec<double, D> there = mirrored_place(domain.grid, felt.mirrors, place);
     u -= felt.share *
-         velocity_of_point(domain, felt.point, reach_of(domain, felt.point, place), place);
+         mirrored(felt.mirrors, velocity_of_point(domain, felt.point,
+                                                  reach_of(domain, felt.point, there), there));
   }
   return u;
+}
+
+/// What passes to a point from the image of another is given by the walls.
+template <int D>
+void add_across_walls(const Domain<D>& domain, const SurfaceTouch<D>& touch,
+                      const FeltPoint<D>& felt, SurfacePart<D>& part) {
+  const Surfaces<D>& surfaces = domain.surfaces;
+  const Vec<double, D> place = surfaces.places[touch.point] + touch.arm,
+                       there = mirrored_place(domain.grid, felt.mirrors, place);
+  const Vec<double, D> push = touch.stiffness * touch.pushed * felt.slope,
+                       rub = felt.share * touch.rub;
+  const Vec<double, D> on_point = mirrored(felt.mirrors, push);
+  const Vec<double, D> back = mirrored(felt.mirrors, rub);
+  part.at_faces = true;
+  for (int a = 0; a < D; ++a) {
+    if (!is_mirrored(felt.mirrors, a, D)) continue;
+    const int side = felt.mirrors >> a & 1u ? 0 : 1;
+    part.of_faces.add(1u << (2 * a + side), a, on_point[a] - push[a] + rub[a] - back[a]);
+  }
+  part.moment_of_faces += cross(in_space<D>(surfaces.places[touch.point]), in_space<D>(on_point)) -
+                          cross(in_space<D>(surfaces.places[felt.point]), in_space<D>(push)) +
+                          cross(in_space<D>(place), in_space<D>(rub)) -
+                          cross(in_space<D>(there), in_space<D>(back));
 }
 
 }  // namespace
@@ -101,7 +127,11 @@ void press_part(Domain<D>& domain, SurfacePart<D>& part) {
       part.stored_rub += friction.stored;
       part.new_slips.push_back({touch.point, touch.opposite, friction.slip});
     }
-    if (!is_face(touch.opposite)) continue;
+    if (!is_face(touch.opposite)) {
+      for (std::uint32_t k = touch.first_felt; k < touch.first_felt + touch.felt; ++k)
+        if (part.felt[k].mirrors != 0) add_across_walls(domain, touch, part.felt[k], part);
+      continue;
+    }
     part.at_faces = true;
     const Vec<double, D> force = touch.push + touch.rub;
     const unsigned face = 1u << (-1 - touch.opposite);

@@ -79,8 +79,9 @@ struct SurfaceTouch {
 template <int D>
 struct FeltPoint {
   std::uint32_t point = 0;
-  double share = 0.0;    // of the weights of all that are felt
-  Vec<double, D> slope;  // of the overlap with this point's place
+  double share = 0.0;        // of the weights of all that are felt
+  Vec<double, D> slope;      // of the overlap with this point's place
+  std::uint8_t mirrors = 0;  // its image is felt that these walls make (mirrored.hpp)
 };
 /// Points of another body that may be near to a point.
 struct NearPoints {

@@ -7,6 +7,7 @@
 #include "mpm/surfaces/between.hpp"
 #include "mpm/surfaces/bonds.hpp"
 #include "mpm/surfaces/host_motion.hpp"
+#include "mpm/surfaces/mirrored.hpp"
 #include "mpm/surfaces/near_points.hpp"
 #include "mpm/surfaces/overlaps.hpp"
 #include "mpm/surfaces/parts.hpp"
@@ -18,15 +19,18 @@ namespace {
 
 /// f(given) for what the touches of an own part give to points of other bodies.
 template <int D, class F>
-void for_each_felt(const Surfaces<D>& surfaces, std::size_t number, const SurfaceTouch<D>& touch,
+void for_each_felt(const Domain<D>& domain, std::size_t number, const SurfaceTouch<D>& touch,
                    F&& f) {
+  const Surfaces<D>& surfaces = domain.surfaces;
+  const TileGrid<D>& grid = domain.grid;
   const SurfacePart<D>& part = surfaces.parts[number];
   const Vec<double, D> place = surfaces.places[touch.point] + touch.arm;
   const double push = touch.stiffness * touch.pushed;
   for (std::uint32_t k = touch.first_felt; k < touch.first_felt + touch.felt; ++k) {
     const FeltPoint<D>& felt = part.felt[k];
-    f(GivenToPoint<D>{number, felt.point, rubs(touch), -push * felt.slope, -felt.share * touch.rub,
-                      place});
+    f(GivenToPoint<D>{number, felt.point, rubs(touch), -push * felt.slope,
+                      mirrored(felt.mirrors, -felt.share * touch.rub),
+                      mirrored_place(grid, felt.mirrors, place)});
   }
 }
 
@@ -59,7 +63,7 @@ std::vector<GivenToPoint<D>> given_by_others(Domain<D>& domain, const Acting<D>&
   for (std::size_t k = 0; k < surfaces.parts.size(); ++k) {
     if (surfaces.parts[k].foreign) continue;
     for (const SurfaceTouch<D>& touch : surfaces.parts[k].touches)
-      if (touch.pushed > 0.0) for_each_felt(surfaces, k, touch, send);
+      if (touch.pushed > 0.0) for_each_felt(domain, k, touch, send);
   }
   for_each_own_bond(acting, surfaces, [&](const Bond<D>& bond, std::uint64_t order) {
     send(other_end(bond, order));
@@ -74,7 +78,8 @@ std::vector<GivenToPoint<D>> given_by_others(Domain<D>& domain, const Acting<D>&
 
 /// Of the touches of an own part; returns how many there are.
 template <int D>
-std::size_t give_touches(Acting<D>& acting, const Surfaces<D>& surfaces, std::size_t number) {
+std::size_t give_touches(Acting<D>& acting, const Domain<D>& domain, std::size_t number) {
+  const Surfaces<D>& surfaces = domain.surfaces;
   std::size_t touching = 0;
   for (const SurfaceTouch<D>& touch : surfaces.parts[number].touches) {
     if (!(touch.pushed > 0.0)) continue;
@@ -83,7 +88,7 @@ std::size_t give_touches(Acting<D>& acting, const Surfaces<D>& surfaces, std::si
     if (rubs(touch))
       acting.rub(number, touch.point, touch.rub, touch.reach,
                  surfaces.places[touch.point] + touch.arm);
-    for_each_felt(surfaces, number, touch, [&](const GivenToPoint<D>& given) {
+    for_each_felt(domain, number, touch, [&](const GivenToPoint<D>& given) {
       if (!acting.is_elsewhere(given.point)) acting.give(given);
     });
   }
@@ -144,7 +149,7 @@ void give_to_hosts(Domain<D>& domain) {
   std::size_t touching = 0;
   for (std::size_t k = 0; k < surfaces.parts.size(); ++k) {
     give_until(k);
-    if (!surfaces.parts[k].foreign) touching += give_touches(acting, surfaces, k);
+    if (!surfaces.parts[k].foreign) touching += give_touches(acting, domain, k);
   }
   for_each_own_bond(acting, surfaces, [&](const Bond<D>& bond, std::uint64_t order) {
     give_until(order);

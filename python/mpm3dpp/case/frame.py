@@ -12,7 +12,6 @@ from mpm3dpp import _core
 from mpm3dpp.base.errors import violation
 from mpm3dpp.base.frames import MATERIAL, UPDATED
 
-from .grid import CONTACT
 from .pairs import presses
 
 if TYPE_CHECKING:
@@ -107,9 +106,6 @@ def _of_case(case: Case, name: str) -> Iterator[tuple[str, str]]:
         yield "does not go with walls of grid.box that absorb yet", f"leave them out, or {updated}"
     if HOLDING & set(case.grid.walls):
         rule = "does not go with walls of grid.box that are slip or fixed"
-        if case.contact_enabled:
-            remedy = f'give walls "{CONTACT}", contact.enabled = false, or {updated[5:]}'
-            yield f"{rule} where bodies touch each other, yet", remedy
         if _restitution(case):
             yield f"{rule} and a restitution, yet", f"leave one of them out, or {updated}"
     if case.grid.outflow_box is not None:

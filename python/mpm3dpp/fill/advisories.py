@@ -30,6 +30,7 @@ from .settling import settling_notes
 from .shape_notes import shape_notes
 from .size_notes import size_notes
 from .stretch_notes import stretch_notes
+from .surface_notes import surface_notes
 from .unit_notes import unit_notes
 from .wall_notes import off_walls, wall_notes
 
@@ -56,6 +57,7 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *_detonations(case, bodies, world),
         *wall_notes(case),
         *off_walls(case, bodies),
+        *surface_notes(case, bodies),
         *gas_notes(case),
         *response_notes(case),
         *explosive_notes(case),
