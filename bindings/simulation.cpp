@@ -13,6 +13,7 @@
 #include "mpm/run/surfaces.hpp"
 #include "mpm/run/time_step.hpp"
 #include "mpm/run/warnings.hpp"
+#include "mpm/surfaces/bonds.hpp"
 #include "translate.hpp"
 
 namespace mpm::bindings {
@@ -122,6 +123,8 @@ void def_acting(SimulationClass& simulation) {
            }),
            nb::arg("body_a"), nb::arg("body_b"), nb::arg("mu"), nb::arg("restitution") = 1.0)
       .def("bond", of_any([](auto& s, int a, int b) {
+             if (s.domain.surfaces.exist())
+               throw std::invalid_argument("bodies on nodes of their own are bonded at the start");
              set_pair_law(s.domain, a, b, {0.0, true, 0.0, 1.0});
            }),
            nb::arg("body_a"), nb::arg("body_b"))
@@ -247,6 +250,7 @@ void def_records(SimulationClass& simulation) {
                                [](std::vector<double> rows) {
                                  return to_numpy(std::move(rows), history_terms.size());
                                }))
+      .def("bonded_groups", of_any([](auto& s) { return bonded_groups(s.domain); }))
       .def("contact_pairs",
            of_any([](auto& s) { return s.domain.contact.records.of_all_ranks(comm_of(s)); }))
       .def("contact_groups", of_any([](auto& s) { return group_pairs(s.domain); }))

@@ -53,7 +53,8 @@ def test_a_case_without_them_is_one() -> None:
         (GRID, f"{GRID}outflow_box = {{ {BOX} }}\n", "grid.outflow_box"),
         (GRID, f"{GRID}coarsening = {{ tiles = 9, times = 1 }}\n", "grid.coarsening"),
         ("enabled = false", "", "contact with b, which has another, yet"),
-        ("enabled = false", "bonded = true", "contact with b, which has another, yet"),
+        ("enabled = false", "bonded = true", "contact.bonded, of bodies that share nodes"),
+        ("enabled = false", "enabled = false\nbonded = true", "contact.bonded, of bodies that"),
         (RUN, f'{RUN}settle = {{ longest = "1 ms" }}\n', "run.settle yet"),
         (MATTER, WATER, "material.m, which flows or breaks"),
         (

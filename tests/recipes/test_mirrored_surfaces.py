@@ -76,7 +76,7 @@ def test_a_part_moves_as_that_of_the_whole(dimension: int, cut: tuple[int, ...])
     """In 2D to rounding; in 3D wholes turn with their own inertia, and points of edges differ."""
     steps = 110 if dimension == 2 else 60
     part, found = ends(stack(dimension, cut), steps)
-    whole, expected = ends(stack(dimension, ()), steps)
+    _, expected = ends(stack(dimension, ()), steps)
     assert part.core.contact_summary()["touching_points_max"] > 5
     near = 1e-11 if dimension == 2 else 2e-4
     for ours, theirs, size in zip(found, expected, [4.0, CELL] * 2, strict=True):

@@ -63,14 +63,18 @@ def grains(dimension: int, restitution: float) -> Case:
 
 
 def after(case: Case, steps: int, ranks: int) -> tuple[Simulation, list[bytes]]:
-    """Return what all columns, the history, sums of bodies and pairs are after so many steps."""
     simulation = Simulation(case, threads=1, ranks=ranks)
     simulation.advance(steps)
+    return simulation, state(simulation)
+
+
+def state(simulation: Simulation) -> list[bytes]:
+    """Return what all columns, the history, sums of bodies and pairs are by now."""
     core = simulation.core
     found = [core.history(), core.part_sums()[0], core.part_sums()[1]]
     found += [core.column(b, one.name) for b in range(core.body_count) for one in core.columns(b)]
     found += [[*one.force, *one.impulse, one.friction_work] for one in core.contact_pairs()]
-    return simulation, [np.array(one).tobytes() for one in found]
+    return [np.array(one).tobytes() for one in found]
 
 
 @pytest.mark.parametrize("restitution", [1.0, 0.5])
@@ -95,3 +99,32 @@ def test_a_ring_that_touches_itself() -> None:
     assert 0.0 < right - left < 1e-3
     for ranks in (2, 3):
         assert after(case, steps, ranks)[1] == found
+
+
+def test_velocities_that_are_set() -> None:
+    """Between two steps, of a body that two ranks share; as one rank has it."""
+    case, found = grains(2, 0.5), []
+    for ranks in (1, 3):
+        simulation, _ = after(case, 100, ranks)
+        for name in simulation.bodies[:3]:
+            simulation.set_velocity(name, -simulation.column(name, "velocity"))
+        simulation.advance(100)
+        found.append(state(simulation))
+    assert found[0] == found[1]
+
+
+def test_grains_that_settle() -> None:
+    """Before the time 0, and a while after it."""
+    text = GRAINS.replace("DIMENSION", "2").replace("RESTITUTION", "0.5")
+    for word, value in {
+        "LOWER": [0, 0],
+        "UPPER": [0.04, 0.04],
+        "GRAVITY": [0, -50],
+        "VELOCITY": [0, 0],
+        "COUNT": [4, 3],
+    }.items():
+        text = text.replace(f"= {word}", f"= {value}")
+    case = Case.from_text(text.replace("[contact]", 'settle = { longest = "2 ms" }\n[contact]'))
+    one, found = after(case, 300, 1)
+    assert one.time > 0.0
+    assert after(case, 300, 3)[1] == found

@@ -47,6 +47,22 @@ inline int rank_of_largest(Comm& comm, std::vector<double> key) {
   return static_cast<int>(-key.back());
 }
 
+/// The entries of all ranks: own ones, then those of the others by rank.
+template <class Entry>
+  requires std::is_trivially_copyable_v<Entry>
+void entries_of_all(Comm& comm, std::vector<Entry>& entries) {
+  if (comm.alone()) return;
+  Mail mail;
+  for (int rank = 0; rank < comm.size(); ++rank) {
+    if (rank == comm.rank()) continue;
+    mail.out.push_back({rank, {}});
+    write_all<Entry>(mail.out.back(), entries);
+  }
+  comm.exchange(mail);
+  for (const Letter& letter : mail.in)
+    for (Reader reader(letter); !reader.done();) entries.push_back(reader.read<Entry>());
+}
+
 /// What one rank has, to all.
 inline void broadcast(Comm& comm, int from, std::vector<std::byte>& bytes) {
   if (comm.alone()) return;

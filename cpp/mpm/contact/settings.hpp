@@ -36,11 +36,9 @@ struct ContactSettings {
   using Self = ContactSettings;
   static constexpr auto settings = std::tuple{
       Setting{"enabled", &Self::enabled, "without contact the bodies do not see each other"},
-      Setting{
-          "bonded", &Self::bonded,
-          "all bodies have one velocity field, so that they stick together wherever they meet, "
-          "as one body of several materials; nothing else of this table then matters. With frame = "
-          "\"material\" what touches at the start is held by springs"},
+      Setting{"bonded", &Self::bonded,
+              "all bodies have one velocity field, so that they stick together wherever they meet, "
+              "as one body of several materials; nothing else of this table then matters"},
       Setting{"detection", &Self::detection,
               "\"gap\" (touching and approaching) or \"velocity\" (approaching only)"},
       Setting{"normal", &Self::normal,
@@ -98,13 +96,12 @@ inline PairLaw law_of(const ContactSettings& settings, int a, int b) {
       std::ranges::lower_bound(list, key, {}, &std::pair<std::uint64_t, PairLaw>::first);
   return at != list.end() && at->first == key
              ? at->second
-             : PairLaw{settings.friction, settings.bonded, 0.0, settings.restitution};
+             : PairLaw{settings.friction, false, 0.0, settings.restitution};
 }
 
 /// Are any pairs bonded?
 inline bool bonds(const ContactSettings& settings) {
-  return settings.bonded ||
-         std::ranges::any_of(settings.pair_laws, [](const auto& x) { return x.second.bonded; });
+  return std::ranges::any_of(settings.pair_laws, [](const auto& x) { return x.second.bonded; });
 }
 
 }  // namespace mpm

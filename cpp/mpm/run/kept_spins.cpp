@@ -2,7 +2,7 @@
 
 #include <array>
 #include <map>
-#include <optional>
+#include <span>
 
 #include "mpm/math/eigen.hpp"
 #include "mpm/run/gather.hpp"
@@ -39,6 +39,13 @@ bool is_held(const Domain<D>& domain, int body) {
   });
 }
 
+/// Of a body the first tile that a rank has of it.
+template <int D>
+struct FirstTile {
+  std::int32_t spin = 0, rank = 0;
+  Index<D> tile{};
+};
+
 }  // namespace
 
 template <int D>
@@ -68,31 +75,25 @@ void find_shared_bodies(Domain<D>& domain) {
   Comm& comm = *domain.grid.partition.comm;
   domain.shared_bodies.clear();
   if (comm.alone()) return;
-  Mail mail;
-  for (int rank = 0; rank < comm.size(); ++rank)
-    if (rank != comm.rank()) mail.out.push_back({rank, {}});
-  std::vector<std::optional<Index<D>>> first(domain.kept_spins.size());  // tiles here
-  for (std::size_t k = 0; k < first.size(); ++k) {
-    for (const Patch<D>& patch : patches_of<D>(domain.grid.patches, domain.kept_spins[k].body))
-      if (!patch.foreign && !first[k]) first[k] = patch.tile;
-    if (!first[k]) continue;
-    for (Letter& letter : mail.out) {
-      write(letter, static_cast<std::int32_t>(k));
-      write(letter, *first[k]);
-    }
+  std::vector<FirstTile<D>> first;  // here, then of the others
+  for (std::size_t k = 0; k < domain.kept_spins.size(); ++k) {
+    const auto patches = patches_of<D>(domain.grid.patches, domain.kept_spins[k].body);
+    const auto own = std::ranges::find(patches, false, &Patch<D>::foreign);
+    if (own != patches.end())
+      first.push_back({static_cast<std::int32_t>(k), comm.rank(), own->tile});
   }
-  comm.exchange(mail);
+  const auto here = static_cast<std::ptrdiff_t>(first.size());
+  entries_of_all(comm, first);
+  const std::span own(first.begin(), first.begin() + here);
   std::map<std::int32_t, SharedBody> shared;
-  for (const Letter& letter : mail.in)
-    for (Reader reader(letter); !reader.done();) {
-      const auto k = reader.template read<std::int32_t>();
-      const auto tile = reader.template read<Index<D>>();
-      const std::optional<Index<D>>& own = first[static_cast<std::size_t>(k)];
-      if (!own) continue;
-      SharedBody& body = shared.try_emplace(k, SharedBody{k, true, {}}).first->second;
-      body.first = body.first && tile_less<D>(*own, tile);
-      body.others.push_back(letter.rank);
-    }
+  for (const FirstTile<D>& other : std::span(first).subspan(own.size())) {
+    const auto mine = std::ranges::lower_bound(own, other.spin, {}, &FirstTile<D>::spin);
+    if (mine == own.end() || mine->spin != other.spin) continue;
+    SharedBody& body =
+        shared.try_emplace(other.spin, SharedBody{other.spin, true, {}}).first->second;
+    body.first = body.first && tile_less<D>(mine->tile, other.tile);
+    body.others.push_back(other.rank);
+  }
   for (auto& [k, body] : shared) domain.shared_bodies.push_back(std::move(body));
 }
 

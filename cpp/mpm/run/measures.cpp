@@ -98,9 +98,12 @@ std::size_t bytes_of_surfaces(const Surfaces<D>& surfaces) {
     parts += size(part.touches) + size(part.slips) + size(part.new_slips) + size(part.near_of) +
              size(part.awake_of) + size(part.awake) + size(part.near) + size(part.felt);
   return parts + size(surfaces.part_of) + size(surfaces.hosts) + size(surfaces.points) +
-         size(surfaces.places) + size(surfaces.others.places_at_start) + size(surfaces.set_back) +
-         size(surfaces.places_of_lists) + size(surfaces.motions) + size(surfaces.place_of_motion) +
-         size(surfaces.between) + size(surfaces.on_hosts) + size(surfaces.place_on_hosts);
+         size(surfaces.places) + size(surfaces.bonds) + size(surfaces.on_bodies) +
+         size(surfaces.moving) + size(surfaces.between_parts) + size(surfaces.on_bodies_by_part) +
+         size(surfaces.others.hosts) + size(surfaces.others.places_at_start) +
+         size(surfaces.set_back) + size(surfaces.places_of_lists) + size(surfaces.motions) +
+         size(surfaces.place_of_motion) + size(surfaces.between) + size(surfaces.on_hosts) +
+         size(surfaces.place_on_hosts);
 }
 
 }  // namespace

@@ -77,9 +77,8 @@ void prepare(Simulation<D>& simulation) {
   check_bodies(domain);
   simulation.phase = Phase::broken;  // until all is done
   // A body alone may touch itself.
-  domain.surfaces.meet = domain.contact_settings.enabled && !domain.surfaces.given.empty();
-  // Bodies on nodes of their own are bonded by their surfaces.
-  if (has_kept_nodes(domain)) domain.grid.bonded = false;
+  domain.surfaces.meet = domain.contact_settings.enabled && !domain.contact_settings.bonded &&
+                         !domain.surfaces.given.empty();
   domain.grid.partition.shares_tiles = domain.has_contact();
   add_contact_columns(domain);
   find_held_bodies(simulation);

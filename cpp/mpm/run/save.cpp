@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* other_version = "it was made by another version of mpm3dpp";
 constexpr const char* other_case = "it was made from another case";
-constexpr std::int64_t format = 19;  // raised whenever exchange() or what a value means changes
+constexpr std::int64_t format = 20;  // raised whenever exchange() or what a value means changes
 
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {
@@ -74,9 +74,11 @@ template <int D>
 void exchange(Simulation<D>& simulation, StateStream& stream) {
   Domain<D>& domain = simulation.domain;
   stream.same(format, other_version);
-  for (const std::size_t size : {sizeof(Storage), sizeof(Ledger), sizeof(Removed),
-                                 sizeof(RigidMotion), sizeof(SurfacePiece<D>), sizeof(StepWatch),
-                                 sizeof(Note), sizeof(PairRecord), sizeof(CachedPair<D>)})
+  for (const std::size_t size :
+       {sizeof(Storage), sizeof(Ledger), sizeof(Removed), sizeof(RigidMotion),
+        sizeof(SurfacePiece<D>), sizeof(StepWatch), sizeof(Note), sizeof(PairRecord),
+        sizeof(CachedPair<D>), sizeof(KeptSpin), sizeof(ActingOnHost<D>), sizeof(ActingBetween<D>),
+        sizeof(ActingOnBody)})
     stream.same(size, other_version);
   stream.same(D, other_case);
   stream.same(domain.bodies.size(), other_case);

@@ -26,20 +26,11 @@ template <int D>
 std::vector<KeptBlock<D>> kept_blocks(const TileGrid<D>& grid) {
   Comm& comm = *grid.partition.comm;
   std::vector<KeptBlock<D>> blocks;
-  Mail mail;
   for (const Patch<D>& patch : grid.patches)
     if (patch.keeps && !patch.foreign)
       blocks.push_back({patch.body, comm.rank(), patch.tile,
                         grid.numbers_kept(patch.shape.node_count), 0, patch.memory});
-  for (int rank = 0; rank < comm.size(); ++rank) {
-    if (rank == comm.rank()) continue;
-    mail.out.push_back({rank, {}});
-    for (const KeptBlock<D>& block : blocks) write(mail.out.back(), block);
-  }
-  comm.exchange(mail);
-  for (const Letter& letter : mail.in)
-    for (Reader reader(letter); !reader.done();)
-      blocks.push_back(reader.template read<KeptBlock<D>>());
+  entries_of_all(comm, blocks);
   std::ranges::sort(blocks, [](const KeptBlock<D>& x, const KeptBlock<D>& y) {
     return patch_less<D>(x.body, x.tile, y.body, y.tile);
   });
@@ -65,7 +56,7 @@ void exchange_kept_nodes(Domain<D>& domain, StateStream& stream) {
   std::vector<double> numbers;
   for (std::size_t begin = 0; begin < all; begin += most_at_once) {
     numbers.assign(std::min(most_at_once, all - begin), 0.0);
-    /// f(number in the file from `begin` on, number in the memory here)
+    // f(number in the file from `begin` on, number in the memory here)
     const auto for_each_here = [&](auto&& f) {
       for (const KeptBlock<D>& block : blocks) {
         if (block.rank != stream.comm().rank()) continue;
@@ -92,6 +83,15 @@ void exchange_kept_spins(Domain<D>& domain, StateStream& stream) {
   std::vector<KeptSpin> all = stream.restores() ? domain.kept_spins : gather_kept_spins(domain);
   stream.array(std::span(all));
   if (!stream.restores()) return;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const KeptSpin &found = all[k], &own = domain.kept_spins[k];
+    bool fine = found.body == own.body && found.mass == own.mass && found.excess == own.excess;
+    for (const Vector3& v :
+         {found.momentum, found.of_nodes, found.spin, found.centre, found.velocity})
+      fine = fine && std::isfinite(dot(v, v));
+    StateStream::check(fine, "its nodes are damaged");
+    StateStream::check_flag(found.begun);
+  }
   domain.kept_spins = std::move(all);
   find_shared_bodies(domain);
 }

@@ -121,12 +121,24 @@ void exchange_particles(Domain<D>& domain, std::size_t m, StateStream& stream,
   const Places<D> places(domain, m);
   stream.same(places.count, "it was made from another case");
   stream.same(pool.columns.component_count(), "it was made from another case");
+  const auto places_in_body = [&] {
+    std::vector<double> found;
+    for (int a = 0; pool.reference >= 0 && a < D; ++a) {
+      const double* const X = pool.columns.component(pool.reference + a);
+      for (const PlacedRow& one : places.rows) found.push_back(X[one.row]);
+    }
+    return found;
+  };
+  const std::vector<double> before = stream.restores() ? places_in_body() : std::vector<double>{};
   for (int c = 0; c < pool.columns.component_count(); ++c)
     pool.columns.with_component(c, [&]<class Number>(Number* values) {
       places.template exchange<Number>(
           stream, [&](std::uint32_t row) { return values[row]; },
           [&](std::uint32_t row, Number number) { values[row] = number; });
     });
+  // Cells, nodes and contact points are made of them.
+  if (stream.restores())
+    stream.check_all(places_in_body() == before, "it was made from another case");
   std::vector<bool> removed(pool.count(), false);
   for (const RemovedRow& one : pool.removed) removed[one.row] = true;
   places.template exchange<std::uint8_t>(

@@ -170,6 +170,9 @@ void check_in_body(const Simulation<D>& simulation) {
                       [](const Body<D>& body) { return body.deforms() && !body.keeps_nodes(); }),
               "contact with bodies that have another yet: give all the same, or "
               "contact.enabled = false");
+  check_frame(domain.bodies.size() == 1 || !s.contact.bonded,
+              "contact.bonded: give bonded = true in [[contact.pair]], which holds what touches at "
+              "the start");
   const bool box = s.grid.box_cells[0] > 0;
   check_frame(!box || std::ranges::find(s.grid.walls, Wall::absorbing) == s.grid.walls.end(),
               "walls of the box that absorb yet: leave them out, or give frame = \"updated\"");

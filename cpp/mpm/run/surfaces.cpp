@@ -158,9 +158,45 @@ void keep_own(Domain<D>& domain) {
     surfaces.place_on_hosts[surfaces.on_hosts[k].host] = static_cast<std::uint32_t>(k + 1);
 }
 
+template <int D>
+bool are_finite(const ForceAtHost<D>& forces) {
+  double sum = dot(forces.force, forces.force);
+  for (int a = 0; a < D; ++a)
+    for (int b = 0; b < D; ++b) sum += std::abs(forces.moment[a][b]);
+  return std::isfinite(sum);
+}
+
+/// Of what was restored.
+template <int D>
+void check_state(const Domain<D>& domain, Surfaces<D>& surfaces) {
+  const auto is_body = [&](int body) {
+    return body >= 0 && std::cmp_less(body, domain.bodies.size());
+  };
+  const auto check = [](bool holds) { StateStream::check(holds, damaged); };
+  check(std::ranges::all_of(surfaces.places_of_lists, is_finite<D>));
+  check(std::isfinite(surfaces.age_of_lists) && surfaces.closing >= 0.0 &&
+        std::isfinite(surfaces.closing));
+  check(std::ranges::is_sorted(surfaces.on_hosts, {}, &ActingOnHost<D>::host));
+  for (const ActingOnHost<D>& on : surfaces.on_hosts)
+    check(on.host < surfaces.hosts.size() && are_finite(on.push) && are_finite(on.rub));
+  check(std::ranges::is_sorted(surfaces.on_bodies, {}, &ActingOnBody::body));
+  for (const ActingOnBody& on : surfaces.on_bodies)
+    check(is_body(on.body) && is_finite(on.push) && is_finite(on.rub) &&
+          is_finite(on.moment_of_push) && is_finite(on.moment_of_rub));
+  for (const ActingBetween<D>& pair : surfaces.between)
+    check(is_body(pair.a) &&
+          (is_body(pair.b) ? pair.a < pair.b : pair.b >= opposite_face(D - 1, 1)) &&
+          is_finite(pair.on_first) && is_finite(pair.push) && std::isfinite(pair.rubbed));
+  for (SurfacePart<D>& part : surfaces.parts) {
+    bool finite = is_finite(part.moment_of_faces);
+    part.of_faces.for_each([&](double x) { finite = finite && std::isfinite(x); });
+    check(finite && (!part.at_faces || domain.grid.walls.exist));
+  }
+}
+
 /// All of it, as one rank has it.
 template <int D>
-void exchange_state(Surfaces<D>& surfaces, StateStream& stream) {
+void exchange_state(const Domain<D>& domain, Surfaces<D>& surfaces, StateStream& stream) {
   exchange_kept(surfaces.set_back, stream, surfaces.points.size(),
                 [](double x) { return std::isfinite(x); });
   for (SurfacePart<D>& part : surfaces.parts) {
@@ -180,18 +216,7 @@ void exchange_state(Surfaces<D>& surfaces, StateStream& stream) {
     stream(surfaces.age_of_lists, surfaces.closing);
   }
   if (!stream.restores()) return;
-  StateStream::check(std::ranges::all_of(surfaces.places_of_lists, is_finite<D>) &&
-                         std::isfinite(surfaces.age_of_lists) && surfaces.closing >= 0.0 &&
-                         std::isfinite(surfaces.closing),
-                     damaged);
-  StateStream::check(std::ranges::is_sorted(surfaces.on_hosts, {}, &ActingOnHost<D>::host) &&
-                         std::ranges::all_of(surfaces.on_hosts,
-                                             [&](const ActingOnHost<D>& on) {
-                                               return on.host < surfaces.hosts.size() &&
-                                                      is_finite(on.push.force) &&
-                                                      is_finite(on.rub.force);
-                                             }),
-                     damaged);
+  check_state(domain, surfaces);
 }
 
 }  // namespace
@@ -202,12 +227,16 @@ void exchange_surfaces(Domain<D>& domain, StateStream& stream) {
   stream.same(surfaces.points.size(), "it was made from another case");
   if (!surfaces.exist()) return;
   if (!stream.restores()) {
+    if (stream.comm().alone()) {
+      exchange_state(domain, surfaces, stream);
+      return;
+    }
     Surfaces<D> all = gather_surfaces(domain);
-    exchange_state(all, stream);
+    exchange_state(domain, all, stream);
     return;
   }
   find_parts(domain);
-  exchange_state(surfaces, stream);
+  exchange_state(domain, surfaces, stream);
   keep_own(domain);
   if (!surfaces.meet) return;
   // How fast near points have moved against each other limits the step, and is known by the lists:

@@ -88,10 +88,10 @@ struct Stages : Data {
       "map volumes", mpm::map_volumes<D>, lists | position | volume | flowing, node_volumes, false,
       true};
   // While a run settles the sizes of what they apply are summed as well.
-  static constexpr Row load_surfaces{
-      "load surfaces", mpm::load_surfaces<D>,
-      lists | position | load_pieces | node_force | impulses | patch_sums,
-      load_pieces | node_force | impulses | patch_sums};
+  static constexpr Row load_surfaces{"load surfaces", mpm::load_surfaces<D>,
+                                     lists | position | deformation | kept_nodes | load_pieces |
+                                         node_force | impulses | patch_sums,
+                                     load_pieces | node_force | impulses | patch_sums};
   static constexpr Row load_by_surfaces{"forces of surfaces", mpm::load_by_surfaces<D>,
                                         lists | surfaces | node_force | impulses | patch_sums,
                                         surfaces | node_force | impulses | patch_sums};
@@ -149,14 +149,15 @@ struct Stages : Data {
   // It reads pieces and body forces for the work of these, once increments are known.
   static constexpr Row advance_nodes{
       "advance nodes", mpm::advance_nodes<D>,
-      lists | position | mass | load_pieces | body_force | surfaces | node_mass | node_velocity |
-          node_force | node_dashpots | node_springs | node_volumes | kept_nodes | patch_sums |
-          impulses,
+      lists | position | mass | deformation | load_pieces | body_force | surfaces | node_mass |
+          node_velocity | node_force | node_dashpots | node_springs | node_volumes | kept_nodes |
+          patch_sums | impulses,
       node_velocity | node_increments | node_volumes | kept_nodes | patch_sums | impulses};
   // Of bodies on nodes of their own alone, which hold all there is of their motion.
   static constexpr Row update_in_body{
       "update in the body", mpm::update_in_body<D>,
-      lists | position | mass | volume | stress | deformation | kept_nodes | patch_sums,
+      lists | position | mass | volume | stress | deformation | force_pressure | kept_nodes |
+          patch_sums,
       position | velocity | volume | stress | deformation | patch_sums, true};
   // Of the new stress, for the forces of the next step.
   static constexpr Row average_in_body{

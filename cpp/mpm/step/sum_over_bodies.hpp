@@ -2,6 +2,7 @@
 // Sums over the patches of bodies on nodes of their own, in the order of the tiles whatever ranks
 // have them: of bodies that several ranks share each tells the others what its patches give.
 #include <algorithm>
+#include <vector>
 
 #include "mpm/comm/letters.hpp"
 #include "mpm/domain.hpp"
@@ -50,11 +51,14 @@ std::vector<TermOfPatch<D, Term>> terms_of_shared_bodies(Domain<D>& domain, F&& 
   return all;
 }
 
-/// take(turning, sum of of(p, turning), a patch) for the bodies of Domain::kept_spins that this
-/// rank has patches p of; the patch is the first of all, or `nobody` where that is another rank's.
+/// In place of the number of a patch: another rank has it.
 inline constexpr std::size_t of_another_rank = static_cast<std::size_t>(-1);
+
+/// take(turning, sum of of(p, turning), patch) for the bodies of Domain::kept_spins that this rank
+/// has patches p of; the patch is the first of all, or `of_another_rank`.
 template <class Term, int D, class F, class Take>
 void sum_over_bodies(Domain<D>& domain, F&& of, Take&& take) {
+  if (domain.kept_spins.empty()) return;
   std::vector<TermOfPatch<D, Term>> told;
   if (!domain.grid.partition.alone()) told = terms_of_shared_bodies<Term>(domain, of);
   domain.threads.for_each(domain.kept_spins.size(), [&](std::size_t k) {

@@ -4,7 +4,6 @@
 #include "mpm/comm/letters.hpp"
 #include "mpm/surfaces/as_one.hpp"
 #include "mpm/surfaces/press.hpp"
-#include "mpm/surfaces/tell_others.hpp"
 
 namespace mpm {
 
@@ -24,8 +23,10 @@ class Acting {
     for (const ActingOnHost<D>& one : surfaces_.on_hosts) surfaces_.place_on_hosts[one.host] = 0;
     surfaces_.on_hosts.clear();
     surfaces_.on_bodies.clear();
+    surfaces_.on_bodies_by_part.clear();
   }
-  /// To a point of an own part at d from its host; d of `rub`: to the place where it acts.
+  /// To a point of an own part, or of a body that does not deform. `reach`: to the place where it
+  /// acts, from the point's host.
   void push(std::uint64_t order, std::uint32_t point, const Vec<double, D>& force) {
     const ContactPoint<D>& at = surfaces_.points[point];
     if (ActingOnBody* const body = body_of(order, at)) {
@@ -54,22 +55,20 @@ class Acting {
   }
   /// Is a point that of another rank, whose hosts it alone knows?
   bool is_elsewhere(std::uint32_t point) const {
-    const SurfacePart<D>& part = part_of_point(point);
+    const SurfacePart<D>& part = part_of_point(surfaces_, point);
     return part.foreign && !part.as_one;
-  }
-  const SurfacePart<D>& part_of_point(std::uint32_t point) const {
-    return surfaces_.parts[surfaces_.hosts[surfaces_.points[point].host].part];
   }
   void finish() {
     std::ranges::sort(surfaces_.on_hosts, {}, &ActingOnHost<D>::host);
     for (std::size_t k = 0; k < surfaces_.on_hosts.size(); ++k)
       surfaces_.place_on_hosts[surfaces_.on_hosts[k].host] = static_cast<std::uint32_t>(k + 1);
     // On bodies as wholes first by part, then all.
-    of_parts_ = entries_of_all(*domain_.grid.partition.comm, of_parts_);
-    std::ranges::sort(of_parts_, [](const ByPart& x, const ByPart& y) {
-      return x.on.body != y.on.body ? x.on.body < y.on.body : x.order < y.order;
+    std::vector<OnBodyByPart>& parts = surfaces_.on_bodies_by_part;
+    entries_of_all(*domain_.grid.partition.comm, parts);
+    std::ranges::sort(parts, [](const OnBodyByPart& x, const OnBodyByPart& y) {
+      return x.on.body != y.on.body ? x.on.body < y.on.body : x.place < y.place;
     });
-    for (const ByPart& one : of_parts_) {
+    for (const OnBodyByPart& one : parts) {
       ActingOnBody& all = acting_on_body(surfaces_.on_bodies, one.on.body);
       all.push += one.on.push;
       all.rub += one.on.rub;
@@ -79,10 +78,6 @@ class Acting {
   }
 
  private:
-  struct ByPart {
-    std::uint64_t order = 0;
-    ActingOnBody on;
-  };
   ActingOnHost<D>& on(std::uint32_t host) {
     std::uint32_t& place = surfaces_.place_on_hosts[host];
     if (place == 0) {
@@ -96,17 +91,17 @@ class Acting {
     const SurfacePart<D>& part = surfaces_.parts[surfaces_.hosts[point.host].part];
     if (!part.as_one) return nullptr;
     // Those of one part follow one another; few bodies are among them.
-    for (auto one = of_parts_.rbegin(); one != of_parts_.rend() && one->order == order; ++one)
+    std::vector<OnBodyByPart>& parts = surfaces_.on_bodies_by_part;
+    for (auto one = parts.rbegin(); one != parts.rend() && one->place == order; ++one)
       if (one->on.body == part.body) return &one->on;
-    ByPart& made = of_parts_.emplace_back();
-    made.order = order;
+    OnBodyByPart& made = parts.emplace_back();
+    made.place = order;
     made.on.body = part.body;
     return &made.on;
   }
 
   Domain<D>& domain_;
   Surfaces<D>& surfaces_;
-  std::vector<ByPart> of_parts_;
 };
 
 }  // namespace mpm

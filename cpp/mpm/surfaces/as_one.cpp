@@ -4,15 +4,6 @@
 #include "mpm/step/stage_functions.hpp"
 
 namespace mpm {
-namespace {
-
-template <int D>
-double time_of_surface_forces(const Domain<D>& domain) {
-  return 0.5 * (domain.time_step + domain.step_before);
-}
-
-}  // namespace
-
 template <int D>
 void move_points_as_one(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
@@ -67,7 +58,7 @@ void add_work_as_one(Domain<D>& domain, bool at_end) {
 
 template <int D>
 void push_rigid_by_surfaces(Domain<D>& domain) {
-  const double acts = time_of_surface_forces(domain);
+  const double acts = time_of_forces(domain, true);
   for (const ActingOnBody& on : domain.surfaces.on_bodies) {
     const Body<D>& body = domain.body_at(on.body);
     if (body.keeps_nodes()) continue;  // turn_in_body()

@@ -2,9 +2,8 @@
 
 #include <tuple>
 
-#include "mpm/comm/letters.hpp"
+#include "mpm/step/kept_nodes.hpp"
 #include "mpm/surfaces/restitution.hpp"
-#include "mpm/surfaces/tell_others.hpp"
 
 namespace mpm {
 namespace {
@@ -19,21 +18,15 @@ void keep_deepest(ActingBetween<D>& pair, double overlap, const Vec<double, D>& 
   pair.place = place;
 }
 
-/// What passes between two bodies by one part, or by a bond of it: with the place that it has in
-/// the order of all.
-template <int D>
-struct BetweenByPart {
-  std::uint64_t place = 0;
-  ActingBetween<D> pair;
-};
-
 /// The last of the pairs so far if it is that of these bodies at this place, or a new one.
 template <int D>
 ActingBetween<D>& last_of(std::vector<BetweenByPart<D>>& all, std::uint64_t place, int a, int b) {
   if (all.empty() || all.back().place != place || all.back().pair.a != a ||
       all.back().pair.b != b) {
+    const std::uint64_t entry = all.size();
     all.emplace_back();
     all.back().place = place;
+    all.back().entry = entry;
     all.back().pair.a = a;
     all.back().pair.b = b;
   }
@@ -68,8 +61,9 @@ void add_part(const Domain<D>& domain, std::size_t number, std::vector<BetweenBy
 template <int D>
 void add_own_bonds(const Surfaces<D>& surfaces, std::vector<BetweenByPart<D>>& all) {
   for (const Bond<D>& bond : surfaces.bonds) {
-    const std::uint32_t number = surfaces.hosts[surfaces.points[bond.first].host].part;
-    if (surfaces.parts[number].foreign) continue;
+    const SurfacePart<D>& part = part_of_point(surfaces, bond.first);
+    if (part.foreign) continue;
+    const auto number = static_cast<std::size_t>(&part - surfaces.parts.data());
     const bool first = bond.from < bond.body;
     const int a = first ? bond.from : bond.body, b = first ? bond.body : bond.from;
     ActingBetween<D>& pair = last_of(all, surfaces.parts.size() + number, a, b);
@@ -84,17 +78,19 @@ void add_own_bonds(const Surfaces<D>& surfaces, std::vector<BetweenByPart<D>>& a
 template <int D>
 void sum_between(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
-  std::vector<BetweenByPart<D>> parts;
+  std::vector<BetweenByPart<D>>& parts = surfaces.between_parts;
+  parts.clear();
   for (std::size_t k = 0; k < surfaces.parts.size(); ++k)
     if (!surfaces.parts[k].foreign) add_part(domain, k, parts);
   add_own_bonds(surfaces, parts);
-  parts = entries_of_all(*domain.grid.partition.comm, parts);
-  std::ranges::stable_sort(parts, [](const BetweenByPart<D>& x, const BetweenByPart<D>& y) {
-    return std::tuple(x.pair.a, x.pair.b, x.place) < std::tuple(y.pair.a, y.pair.b, y.place);
+  entries_of_all(*domain.grid.partition.comm, parts);
+  std::ranges::sort(parts, {}, [](const BetweenByPart<D>& one) {
+    return std::tuple(one.pair.a, one.pair.b, one.place, one.entry);
   });
   std::vector<ActingBetween<D>>& all = surfaces.between;
   all.clear();
-  for (const auto& [place, one] : parts) {
+  for (const BetweenByPart<D>& by_part : parts) {
+    const ActingBetween<D>& one = by_part.pair;
     if (all.empty() || all.back().a != one.a || all.back().b != one.b) {
       all.push_back(one);
       continue;
@@ -115,7 +111,7 @@ void record_between(Domain<D>& domain) {
   PairRecords& records = domain.contact.records;
   const std::int64_t step = domain.step + 1;
   // For as long as they have acted on the bodies.
-  const double acts = 0.5 * (domain.time_step + domain.step_before);
+  const double acts = time_of_forces(domain, true);
   records.begin_step();
   // All ranks know them, and one records them.
   const bool is_first = domain.grid.partition.comm->rank() == 0;

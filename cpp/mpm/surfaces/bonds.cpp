@@ -1,16 +1,14 @@
 #include "mpm/surfaces/bonds.hpp"
 
 #include <ranges>
+#include <set>
 #include <span>
-#include <stdexcept>
 #include <tuple>
 
-#include "mpm/comm/letters.hpp"
 #include "mpm/surfaces/law.hpp"
 #include "mpm/surfaces/near_points.hpp"
 #include "mpm/surfaces/overlaps.hpp"
 #include "mpm/surfaces/parts.hpp"
-#include "mpm/surfaces/tell_others.hpp"
 
 namespace mpm {
 namespace {
@@ -60,38 +58,11 @@ std::vector<Found> find_touching(const Domain<D>& domain) {
     });
   }
   // As one rank finds them.
-  found = entries_of_all(*domain.grid.partition.comm, found);
+  entries_of_all(*domain.grid.partition.comm, found);
   std::ranges::sort(found, [](const Found& x, const Found& y) {
     return std::tuple(x.first, x.to, x.nearest) < std::tuple(y.first, y.to, y.nearest);
   });
   return found;
-}
-
-/// Refuse bonds of bodies that touch nowhere.
-template <int D>
-void check_bonds(const Domain<D>& domain, const std::vector<Found>& found) {
-  const auto& bodies = domain.bodies;
-  const auto group = [&](int body) { return domain.body_at(body).group; };
-  const auto refuse = [&](int a, const std::string& b) {
-    throw std::invalid_argument("frame = \"material\" does not go with a bond of " +
-                                domain.body_at(a).name + " to " + b +
-                                ", which it does not touch at the start: bring them together, or "
-                                "give frame = \"updated\"");
-  };
-  for (std::size_t a = 0; a < bodies.size(); ++a) {
-    const int one = static_cast<int>(a);
-    bool alone = true;
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-      const int other = static_cast<int>(b);
-      if (!shall_be_bonded(domain, one, other)) continue;
-      const bool touch = std::ranges::any_of(found, [&](const Found& bond) {
-        return group(bond.from) == group(one) && group(bond.to) == group(other);
-      });
-      alone = alone && !touch;
-      if (!touch && !domain.contact_settings.bonded && one < other) refuse(one, bodies[b].name);
-    }
-    if (alone && domain.contact_settings.bonded && bodies.size() > 1) refuse(one, "any other");
-  }
 }
 
 }  // namespace
@@ -101,7 +72,6 @@ void add_bonds(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
   find_near_points(domain);
   const std::vector<Found> found = find_touching(domain);
-  check_bonds(domain, found);
   const std::size_t count = surfaces.given.size();
   for (std::uint32_t k = 0; k < count; ++k) surfaces.given[k].number = k;
   std::vector<std::uint32_t> first;  // of each bond the number of its first point as it was given
@@ -138,13 +108,23 @@ void pull_bonds(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
   domain.threads.for_each(surfaces.bonds.size(), [&](std::size_t k) {
     Bond<D>& bond = surfaces.bonds[k];
-    if (surfaces.parts[surfaces.hosts[surfaces.points[bond.first].host].part].foreign) return;
+    if (part_of_point(surfaces, bond.first).foreign) return;
     bond.pull = bond.stiffness * (surfaces.places[bond.second] - surfaces.places[bond.first]);
   });
 }
 
 template void add_bonds<2>(Domain<2>&);
 template void add_bonds<3>(Domain<3>&);
+template <int D>
+std::vector<std::pair<int, int>> bonded_groups(const Domain<D>& domain) {
+  std::set<std::pair<int, int>> found;
+  for (const Bond<D>& bond : domain.surfaces.bonds)
+    found.insert(std::minmax(domain.body_at(bond.from).group, domain.body_at(bond.body).group));
+  return {found.begin(), found.end()};
+}
+
+template std::vector<std::pair<int, int>> bonded_groups<2>(const Domain<2>&);
+template std::vector<std::pair<int, int>> bonded_groups<3>(const Domain<3>&);
 template void pull_bonds<2>(Domain<2>&);
 template void pull_bonds<3>(Domain<3>&);
 

@@ -10,10 +10,14 @@
 
 namespace mpm {
 
-/// Bond what shall be; the parts are made anew, with the points that it takes. Throws
-/// std::invalid_argument where bodies that shall be bonded touch nowhere.
+/// Bond what shall be; the parts are made anew, with the points that it takes, and lists of near
+/// points have to be.
 template <int D>
 void add_bonds(Domain<D>& domain);
+
+/// The pairs of groups of bodies that some bond holds, each with the lower one first.
+template <int D>
+std::vector<std::pair<int, int>> bonded_groups(const Domain<D>& domain);
 
 /// What bonds pull by now.
 template <int D>

@@ -2,6 +2,8 @@
 // Points near walls that are planes of symmetry, or fixed: of the mirrored bodies behind these a
 // point feels what its own image would feel of the bodies here, as |x_q' - x_p| = |x_q - x_p'|.
 // Energies are those of the half before the wall.
+#include <array>
+
 #include "mpm/domain.hpp"
 
 namespace mpm {

@@ -3,6 +3,10 @@
 // are its own, and knows of all others where they were when lists were made. Of what may be felt by
 // now it is told in each step where it is and how it moves; what it pushes there it tells who has
 // it. All sums have the order of the parts, whoever has them.
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
 #include "mpm/comm/comm.hpp"
 #include "mpm/surfaces/hosts.hpp"
 

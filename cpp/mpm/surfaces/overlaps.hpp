@@ -1,4 +1,6 @@
 #pragma once
+#include <functional>
+
 #include "mpm/domain.hpp"
 
 namespace mpm {

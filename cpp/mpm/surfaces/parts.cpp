@@ -1,6 +1,7 @@
 #include "mpm/surfaces/parts.hpp"
 
-#include <cassert>
+#include <algorithm>
+#include <stdexcept>
 
 #include "mpm/comm/letters.hpp"
 #include "mpm/grid/connect.hpp"
@@ -175,7 +176,7 @@ void find_parts(Domain<D>& domain) {
     SurfacePart<D>& part = surfaces.parts[k];
     if (part.as_one || part.foreign) continue;
     const int p = find_patch<D>(domain.grid, part.body, part.tile);
-    assert(p >= 0);
+    if (p < 0) throw std::logic_error("a tile of a surface has no patch");
     part.patch = static_cast<std::uint32_t>(p);
     surfaces.part_of[part.patch] = static_cast<std::int32_t>(k);
   }

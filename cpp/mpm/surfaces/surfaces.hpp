@@ -127,6 +127,17 @@ struct ActingOnBody {
   Vector3 moment() const { return moment_of_push + moment_of_rub; }
 };
 
+/// The two by one part, with its place in the order of all; behind all parts by its bonds.
+template <int D>
+struct BetweenByPart {
+  std::uint64_t place = 0, entry = 0;  // `entry`: of those of a rank
+  ActingBetween<D> pair;
+};
+struct OnBodyByPart {
+  std::uint64_t place = 0;
+  ActingOnBody on;
+};
+
 /// The points whose hosts lie in one tile of a body, which one thread takes; of a body that does
 /// not deform all of them, which go with it.
 template <int D>
@@ -164,7 +175,7 @@ struct DeepestPoint {
 template <int D>
 struct Surfaces {
   std::vector<GivenPoint<D>> given;     // until the bodies have rows
-  std::vector<std::uint32_t> given_of;  // of each point its place among these; as long
+  std::vector<std::uint32_t> given_of;  // of each point its place among these, until then
   double spacing = 0.0;  // e: the points of all bodies lie half of it behind their surfaces [m]
   double onset = 0.0;    // way over which springs begin, that of a step at the start [m]
   bool meet = false;     // do bodies touch each other by them?
@@ -183,20 +194,28 @@ struct Surfaces {
   double moved = 0.0;                           // by the farthest of them since [m]
   double closing = 0.0;      // by how fast points near each other have moved since, at most [m/s]
   double awake_until = 0.0;  // by so much, SurfacePart::awake serves [m]
-  std::vector<HostMotion<D>> motions;          // of hosts in touch
-  std::vector<std::uint32_t> moving;           // the numbers of these
-  std::vector<std::uint32_t> place_of_motion;  // of each host, 1 + where that is, or 0
-  std::vector<ActingBetween<D>> between;       // bodies, by pair
-  std::vector<ActingOnBody> on_bodies;         // that do not deform, by body
-  std::vector<ActingOnHost<D>> on_hosts;       // by host; in the coming step
-  std::vector<std::uint32_t> place_on_hosts;   // scratch: of each host, 1 + where it is, or 0
-  double stored_push = 0.0, stored_rub = 0.0;  // in the springs after the last step [J]
+  std::vector<HostMotion<D>> motions;           // of hosts in touch
+  std::vector<std::uint32_t> moving;            // the numbers of these
+  std::vector<std::uint32_t> place_of_motion;   // of each host, 1 + where that is, or 0
+  std::vector<ActingBetween<D>> between;        // bodies, by pair
+  std::vector<BetweenByPart<D>> between_parts;  // scratch
+  std::vector<OnBodyByPart> on_bodies_by_part;  // scratch
+  std::vector<ActingOnBody> on_bodies;          // that do not deform, by body
+  std::vector<ActingOnHost<D>> on_hosts;        // by host; in the coming step
+  std::vector<std::uint32_t> place_on_hosts;    // scratch: of each host, 1 + where it is, or 0
+  double stored_push = 0.0, stored_rub = 0.0;   // in the springs after the last step [J]
 
   DeepestPoint<D> deepest;
   std::size_t touching = 0, touching_max = 0;  // points that are pushed, now and since the start
 
   bool exist() const { return !points.empty(); }
 };
+
+/// The part that a point belongs to.
+template <int D>
+const SurfacePart<D>& part_of_point(const Surfaces<D>& surfaces, std::uint32_t point) {
+  return surfaces.parts[surfaces.hosts[surfaces.points[point].host].part];
+}
 
 /// By how much the surface of a point is set back towards a opposite [m].
 template <int D>

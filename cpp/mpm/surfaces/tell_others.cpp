@@ -1,17 +1,14 @@
 #include "mpm/surfaces/tell_others.hpp"
 
+#include <algorithm>
+#include <span>
+
 #include "mpm/comm/letters.hpp"
 #include "mpm/step/sum_over_bodies.hpp"
 #include "mpm/surfaces/host_motion.hpp"
-#include "mpm/surfaces/parts.hpp"
 
 namespace mpm {
 namespace {
-
-template <int D>
-SurfacePart<D>& part_of_host(Surfaces<D>& surfaces, std::uint32_t host) {
-  return surfaces.parts[surfaces.hosts[host].part];
-}
 
 SurfacePartner& partner_with(std::vector<SurfacePartner>& partners, int rank) {
   const auto at = std::ranges::find(partners, rank, &SurfacePartner::rank);
@@ -82,17 +79,16 @@ void ask_for_awake(Domain<D>& domain) {
   std::vector<SurfacePartner>& partners = surfaces.others.partners;
   partners.clear();
   const auto ask = [&](std::uint32_t point) {
-    const std::uint32_t host = surfaces.points[point].host;
-    const SurfacePart<D>& part = part_of_host(surfaces, host);
+    const SurfacePart<D>& part = part_of_point(surfaces, point);
     if (!part.foreign || part.as_one) return;
     SurfacePartner& partner = partner_with(partners, part.rank);
     partner.take_points.push_back(point);
-    partner.take_hosts.push_back(host);
+    partner.take_hosts.push_back(surfaces.points[point].host);
   };
   for (const SurfacePart<D>& part : surfaces.parts)
     if (!part.foreign) std::ranges::for_each(part.awake, ask);
   for (const Bond<D>& bond : surfaces.bonds)
-    if (!part_of_host(surfaces, surfaces.points[bond.first].host).foreign) ask(bond.second);
+    if (!part_of_point(surfaces, bond.first).foreign) ask(bond.second);
   Mail mail;
   for (SurfacePartner& partner : partners) {
     sort_once(partner.take_points);
@@ -151,7 +147,8 @@ void tell_motions(Domain<D>& domain) {
   std::vector<SpinOf> own;
   for (std::size_t k = 0; k < domain.kept_spins.size(); ++k)
     if (has_first(domain, k)) own.push_back({k, domain.kept_spins[k]});
-  for (const SpinOf& one : entries_of_all(comm, own)) domain.kept_spins[one.number] = one.spin;
+  entries_of_all(comm, own);
+  for (const SpinOf& one : own) domain.kept_spins[one.number] = one.spin;
 }
 
 template void tell_all_places<2>(Domain<2>&);

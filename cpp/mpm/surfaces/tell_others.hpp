@@ -20,21 +20,4 @@ void tell_awake(Domain<D>& domain);
 template <int D>
 void tell_motions(Domain<D>& domain);
 
-/// Entries of all ranks, from those of each; in the order of the ranks.
-template <class Entry>
-std::vector<Entry> entries_of_all(Comm& comm, const std::vector<Entry>& own) {
-  if (comm.alone()) return own;
-  Mail mail;
-  for (int rank = 0; rank < comm.size(); ++rank) {
-    if (rank == comm.rank()) continue;
-    mail.out.push_back({rank, {}});
-    write_all<Entry>(mail.out.back(), own);
-  }
-  comm.exchange(mail);
-  std::vector<Entry> all = own;
-  for (const Letter& letter : mail.in)
-    for (Reader reader(letter); !reader.done();) all.push_back(reader.template read<Entry>());
-  return all;
-}
-
 }  // namespace mpm

@@ -34,12 +34,14 @@ void for_each_felt(const Domain<D>& domain, std::size_t number, const SurfaceTou
   }
 }
 
-/// f(bond, its place behind all parts) for bonds of own points.
+/// f(bond, its part's place behind all parts) for bonds of own points.
 template <int D, class F>
-void for_each_own_bond(const Acting<D>& acting, const Surfaces<D>& surfaces, F&& f) {
-  for (std::size_t k = 0; k < surfaces.bonds.size(); ++k)
-    if (!acting.part_of_point(surfaces.bonds[k].first).foreign)
-      f(surfaces.bonds[k], surfaces.parts.size() + k);
+void for_each_own_bond(const Surfaces<D>& surfaces, F&& f) {
+  for (const Bond<D>& bond : surfaces.bonds) {
+    const SurfacePart<D>& part = part_of_point(surfaces, bond.first);
+    const auto number = static_cast<std::size_t>(&part - surfaces.parts.data());
+    if (!part.foreign) f(bond, surfaces.parts.size() + number);
+  }
 }
 
 template <int D>
@@ -58,16 +60,15 @@ std::vector<GivenToPoint<D>> given_by_others(Domain<D>& domain, const Acting<D>&
   Mail mail;
   const auto send = [&](const GivenToPoint<D>& given) {
     if (acting.is_elsewhere(given.point))
-      write(letter_to(mail, acting.part_of_point(given.point).rank), given);
+      write(letter_to(mail, part_of_point(surfaces, given.point).rank), given);
   };
   for (std::size_t k = 0; k < surfaces.parts.size(); ++k) {
     if (surfaces.parts[k].foreign) continue;
     for (const SurfaceTouch<D>& touch : surfaces.parts[k].touches)
       if (touch.pushed > 0.0) for_each_felt(domain, k, touch, send);
   }
-  for_each_own_bond(acting, surfaces, [&](const Bond<D>& bond, std::uint64_t order) {
-    send(other_end(bond, order));
-  });
+  for_each_own_bond(
+      surfaces, [&](const Bond<D>& bond, std::uint64_t order) { send(other_end(bond, order)); });
   comm.exchange(mail);
   for (const Letter& letter : mail.in)
     for (Reader reader(letter); !reader.done();)
@@ -119,14 +120,16 @@ void sum_up(Domain<D>& domain, std::size_t touching) {
         deepest = {k, {part.body, touch.overlap, surfaces.places[touch.point] + touch.arm}};
   }
   for (const Bond<D>& bond : surfaces.bonds)
-    if (!surfaces.parts[surfaces.hosts[surfaces.points[bond.first].host].part].foreign)
+    if (!part_of_point(surfaces, bond.first).foreign)
       stored[0].add(0.5 * dot(bond.pull, bond.pull) / bond.stiffness);
   all_sum(comm, stored);
   surfaces.stored_push = stored[0].value();
   surfaces.stored_rub = stored[1].value();
   surfaces.deepest = {};
   std::uint64_t at = 0;
-  for (const DeepestOfRank<D>& one : entries_of_all(comm, std::vector{deepest})) {
+  std::vector all{deepest};
+  entries_of_all(comm, all);
+  for (const DeepestOfRank<D>& one : all) {
     const double overlap = one.point.overlap;
     if (overlap < surfaces.deepest.overlap || !(overlap > 0.0)) continue;
     if (overlap == surfaces.deepest.overlap && one.part > at) continue;
@@ -151,7 +154,7 @@ void give_to_hosts(Domain<D>& domain) {
     give_until(k);
     if (!surfaces.parts[k].foreign) touching += give_touches(acting, domain, k);
   }
-  for_each_own_bond(acting, surfaces, [&](const Bond<D>& bond, std::uint64_t order) {
+  for_each_own_bond(surfaces, [&](const Bond<D>& bond, std::uint64_t order) {
     give_until(order);
     acting.push(order, bond.first, bond.pull);
     const GivenToPoint<D> other = other_end(bond, order);

@@ -66,7 +66,7 @@ class Body(CaseModel):
             None for nothing.
         frame: where its nodes lie: in space, "updated", where any flow is possible; or in the body,
             "material", where they keep their motion and nothing of it is lost, as of elastic bodies
-            of few cells that vibrate, spin, hit or roll (no fluids, failure or loads yet).
+            of few cells that vibrate, spin, hit or roll (no fluids, no failure yet).
         motion: "fixed", or a motion that the body has whatever acts on it; it does not deform
             then; None for a body that is free to move.
     """

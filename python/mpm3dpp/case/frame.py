@@ -97,7 +97,10 @@ def _of_case(case: Case, name: str) -> Iterator[tuple[str, str]]:
     if case.grid.basis == "linear":
         yield "needs gradients without jumps", 'give grid.basis = "quadratic_bspline"'
     others = [one for one in case.parts() if not case.is_rigid(one) and one not in in_body(case)]
-    if case.contact.enabled and others:
+    if case.contact.bonded and case.body_count > 1:
+        remedy = "give bonded = true in [[contact.pair]], which holds what touches at the start"
+        yield "does not go with contact.bonded, of bodies that share nodes", remedy
+    if case.contact_enabled and others:
         rule = f"does not go with contact with {others[0]}, which has another, yet"
         yield rule, f'give all frame = "{MATERIAL}", contact.enabled = false, or {updated[5:]}'
     if case.contact_enabled:

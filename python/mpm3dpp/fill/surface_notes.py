@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a user should look at again of contact between surfaces: bodies that meet too fast for it."""
+"""What a user should look at again of contact between surfaces: what meets too fast for it."""
 
 from __future__ import annotations
 

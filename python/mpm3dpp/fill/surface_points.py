@@ -41,7 +41,8 @@ def point_spacing(case: Case, parts: Iterable[FilledPart]) -> float | None:
     That of the finest body.
     """
     own = [part.spacing for part in parts if case.parts()[part.name].frame == MATERIAL]
-    if not own or not (case.contact.enabled or CONTACT in case.grid.walls):  # One may touch itself.
+    touches = case.contact.enabled and not case.contact.bonded  # A body alone may touch itself.
+    if not own or not (touches or CONTACT in case.grid.walls):
         return None
     return min(own) / REACHES
 

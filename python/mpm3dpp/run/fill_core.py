@@ -9,8 +9,10 @@ from typing import Any
 from mpm3dpp import _core
 from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError
-from mpm3dpp.base.frames import MATERIAL
+from mpm3dpp.base.frames import MATERIAL, UPDATED
 from mpm3dpp.case.case import Case
+from mpm3dpp.case.frame import in_body
+from mpm3dpp.case.pairs import listed_pairs
 from mpm3dpp.fill.initial import overburden
 from mpm3dpp.fill.interference import Interference
 from mpm3dpp.fill.parts import Filled
@@ -95,6 +97,27 @@ def prepare_core(
         core.prepare()
     except ValueError as error:
         raise _refusal(case, str(error)) from None
+    _check_bonds(case, set(core.bonded_groups()))
+
+
+def _check_bonds(case: Case, held: set[tuple[int, int]]) -> None:
+    """Refuse bonds of bodies on nodes of their own that touch nowhere.
+
+    Args:
+        case: of the simulation.
+        held: the numbers of the bodies, or first grains, between which some bond holds.
+    """
+    if not in_body(case):
+        return
+    bonds = listed_pairs(case)
+    for k, pair in enumerate(case.contact.pair):
+        ends = [numbers for numbers, listed in bonds.items() if listed is pair]
+        if not pair.bonded or not ends or held & set(ends):
+            continue
+        names = " and ".join(pair.bodies or pair.materials or [])
+        rule = f"of {names} holds nothing: bodies on nodes of their own are bonded where they touch"
+        remedy = f'bring them together, or give frame = "{UPDATED}"'
+        raise case.error(("contact", "pair", k, "bonded"), f"{rule} at the start", remedy)
 
 
 def _refusal(case: Case, sentence: str) -> CaseError:
