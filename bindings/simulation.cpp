@@ -13,7 +13,6 @@
 #include "mpm/run/surfaces.hpp"
 #include "mpm/run/time_step.hpp"
 #include "mpm/run/warnings.hpp"
-#include "mpm/surfaces/bonds.hpp"
 #include "translate.hpp"
 
 namespace mpm::bindings {
@@ -250,7 +249,6 @@ void def_records(SimulationClass& simulation) {
                                [](std::vector<double> rows) {
                                  return to_numpy(std::move(rows), history_terms.size());
                                }))
-      .def("bonded_groups", of_any([](auto& s) { return bonded_groups(s.domain); }))
       .def("contact_pairs",
            of_any([](auto& s) { return s.domain.contact.records.of_all_ranks(comm_of(s)); }))
       .def("contact_groups", of_any([](auto& s) { return group_pairs(s.domain); }))

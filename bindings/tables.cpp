@@ -4,6 +4,7 @@
 #include "mpm/run/grain_rows.hpp"
 #include "mpm/run/measures.hpp"
 #include "mpm/run/part_rows.hpp"
+#include "mpm/surfaces/bonds.hpp"
 
 namespace mpm::bindings {
 
@@ -33,6 +34,7 @@ void def_tables(SimulationClass& simulation) {
                  return nb::make_tuple(to_numpy(std::move(rows.first), grain_columns.size()),
                                        to_numpy(std::move(rows.second), contact_columns.size()));
                }))
+      .def("bonded_groups", of_any([](auto& s) { return bonded_groups(s.domain); }))
       .def("walls", of_any([](auto& s) {
              require(s, Phase::ready, "call prepare() before walls()");
              return face_records(s.domain);

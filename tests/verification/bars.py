@@ -91,7 +91,12 @@ def unequal_bars_figures(scenes: dict[float, Scene], speed: float) -> list[Figur
         energy.append(inside[-1] / inside[0])
     worst = max(second, key=lambda v: abs(v - 0.5))
     return [
-        judge("E2b", "second bar's mean velocity over v", worst, remark=f"offsets {tuple(scenes)} cells"),
+        judge(
+            "E2b",
+            "second bar's mean velocity over v",
+            worst,
+            remark=f"offsets {tuple(scenes)} cells",
+        ),
         judge("E2b", "first bar's velocity over v", max(first, key=abs)),
         judge("E2b", "energy after over before", max(energy, key=lambda e: abs(e - 1.0))),
     ]

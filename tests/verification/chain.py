@@ -90,7 +90,7 @@ def column(
 
 
 def driven(scene: Scene, until: float) -> Array:
-    """Run to a time [s]; return rows of time, velocities of the discs, bodies 0 to 9, and impulse."""
+    """Run to a time [s]; return rows of time, velocities of the discs, bodies 0 to 9, impulse."""
     impulse = scene.core.history_columns.index("motion_impulse_x")
 
     def watch(s: Scene) -> list[float]:

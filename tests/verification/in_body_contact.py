@@ -61,9 +61,7 @@ def three_discs(scheme: str, dimension: int, basis: str, cells: int = 40) -> lis
     """E9b: three equal discs meet in the middle from 120 degrees."""
     speed, angles = 0.05, np.radians([90.0, 210.0, 330.0])
     outward = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    bodies = {
-        f"disc{k}": ball(0.3 * e, 0.2, (-speed * e).tolist()) for k, e in enumerate(outward)
-    }
+    bodies = {f"disc{k}": ball(0.3 * e, 0.2, (-speed * e).tolist()) for k, e in enumerate(outward)}
     rubber = matter(1000.0, "elastic", E=1000.0, nu=0.3)
     scene = InBody(dimension, 1.0 / cells, 3.6, bodies, rubber)
     return groups.three_figures(scene, outward, speed)
@@ -217,25 +215,25 @@ def hertz_chain(scheme: str, dimension: int, basis: str, cells: int = 20) -> lis
 
 
 def turning(cells: int, ramp: float, duration: float) -> tuple[Array, Scene]:
-    """Turn the supports of C5 up to their spin in `ramp` [s], or at once with `ramp` = 0.
+    """Turn the supports of C5 up to their spin in `ramp` [s], or from the start with `ramp` = 0.
 
-    Before, the disc comes to rest on them. Return rows of time [s] and spin, backwards [rad/s].
+    Return rows of the time since the disc may turn [s] and of its spin, backwards [rad/s].
     """
-    radius, tilt = rolling.RADIUS, rolling.TILT
-    spin = {"times": [0.0, ramp or 1e-9], "values": [0.0, rolling.SPIN]}
+    radius, tilt, settle = rolling.RADIUS, rolling.TILT, rolling.SETTLE
+    spin: Any = rolling.SPIN
+    if ramp:
+        spin = {"times": [settle, settle + ramp], "values": [0.0, rolling.SPIN]}
     bodies = {"disc": ball([0.0, 0.0], radius)}
-    for side in (-1.0, 1.0):
+    for name, side in (("left", -1.0), ("right", 1.0)):
         centre = [2 * radius * side * math.sin(tilt), -2 * radius * math.cos(tilt)]
         motion = {"angular_velocity": spin, "centre": centre}
-        bodies["left" if side < 0 else "right"] = moved(ball(centre, radius), motion)
+        bodies[name] = moved(ball(centre, radius), motion)
     scene = InBody(
-        2, radius / cells, duration, bodies,
+        2, radius / cells, settle + duration, bodies,
         matter(rolling.DENSITY, "elastic", E=rolling.YOUNG, nu=rolling.POISSON),
-        run={"gravity": [0.0, -rolling.GRAVITY], "settle": {"longest": 20.0}},
-        contact={"friction": rolling.FRICTION},
+        run={"gravity": [0.0, -rolling.GRAVITY]}, contact={"friction": rolling.FRICTION},
     )  # fmt: skip
-    scene.rest()
-    return scene.run(duration, lambda s: [s.time, -rolling.spin_of(s, 0)], 5), scene
+    return rolling.turned(scene, duration), scene
 
 
 def rolling_on_discs(scheme: str, dimension: int, basis: str, cells: int = 16) -> list[Figure]:

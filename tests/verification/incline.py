@@ -153,9 +153,7 @@ def rolling(
     )
 
 
-def rolling_figures(
-    what: str, of: Callable[[float, float], tuple[float, float]]
-) -> list[Figure]:
+def rolling_figures(what: str, of: Callable[[float, float], tuple[float, float]]) -> list[Figure]:
     """Return E9's figures of what rolls at an angle [degrees] with a friction."""
     stick, stick_turn = of(30, 0.3)
     slip, slip_turn = of(45, 0.1)

@@ -7,7 +7,7 @@ import re
 from collections import Counter
 from pathlib import Path
 
-from .numerics import DEFAULT
+from .numerics import DEFAULT, MATERIAL
 from .runs import RUNS
 
 ABOUT = Path(__file__).parent / "about.md"
@@ -89,7 +89,8 @@ def summary(rows: Rows) -> str:
     """Return how many figures pass: a row for each problem, a column for each basis and scheme."""
     counts = _counts(rows)
     kinds = {(basis, scheme) for _, basis, scheme, _, _ in counts}
-    columns = sorted(kinds, key=lambda kind: (kind[0] == "-", kind[0] != DEFAULT, kind))
+    first = {DEFAULT: 0, MATERIAL: 1, "-": 3}
+    columns = sorted(kinds, key=lambda kind: (first.get(kind[0], 2), kind))
     names = [f"{basis}, {scheme}" if basis != "-" else "no grid" for basis, scheme in columns]
     passed, judged = (sum(n for key, n in counts.items() if key[4] or every) for every in (0, 1))
     text = (

@@ -45,7 +45,7 @@ def turning(
     )
     material = scene.material(DENSITY, "elastic", E=YOUNG, nu=POISSON)
     x, volume = ball([0.0, 0.0], RADIUS, h / 2)
-    disc = scene.body(material, x, [0.0, 0.0], volume)
+    scene.body(material, x, [0.0, 0.0], volume)
     zero = _core.TimeFunction(0.0)
     spin = _core.TimeFunction(SPIN)
     if ramp:
@@ -55,15 +55,18 @@ def turning(
         x, volume = ball(centre, RADIUS, h / 2)
         support = scene.body(material, x, [0.0, 0.0], volume)
         scene.core.set_motion(support, [zero] * 3, [zero, zero, spin], [*centre, 0.0])
-    scene.start()
+    return turned(scene.start(), duration), scene
+
+
+def turned(scene: Scene, duration: float) -> Array:
+    """Hold the disc, body 0, until it rests; then return rows of time [s] and spin [rad/s]."""
     for k in range(1, STOPS + 1):
         scene.run(SETTLE * k / STOPS)
-        scene.core.set_velocity(disc, np.zeros_like(scene.v(disc)))
-    said = scene.run(SETTLE + duration, lambda s: [s.time - SETTLE, -spin_of(s, disc)], 5)
-    return said, scene
+        scene.core.set_velocity(0, np.zeros_like(scene.v(0)))
+    return scene.run(SETTLE + duration, lambda s: [s.time - SETTLE, -_spin(s, 0)], 5)
 
 
-def spin_of(scene: Scene, body: int) -> float:
+def _spin(scene: Scene, body: int) -> float:
     """Angular momentum about the mass centre over the moment of inertia [rad/s]."""
     m, x, v = scene.core.column(body, "mass"), scene.x(body), scene.v(body)
     x, v = x - (m * x).sum(0) / m.sum(), v - (m * v).sum(0) / m.sum()

@@ -19,6 +19,8 @@ from . import (
     grains,
     groups,
     hopper,
+    in_body,
+    in_body_contact,
     incline,
     point,
     rolling,
@@ -27,7 +29,7 @@ from . import (
     written,
 )
 from .figure import Figure
-from .numerics import DEFAULT
+from .numerics import DEFAULT, MATERIAL
 from .scene import Failed
 
 BASES = ("linear", "gimp")
@@ -209,6 +211,53 @@ def _with_impulses() -> Iterator[Run]:
     yield Run("E10", groups.offset_spheres, scheme, 3, numerics, more, slow=True)
 
 
+def _in_body() -> Iterator[Run]:
+    """Return cases of bodies on nodes of their own."""
+    scheme = choices.AFFINE["scheme"]
+
+    def runs(problem: str, make: Callable[..., list[Figure]], *options: dict) -> Iterator[Run]:
+        slow = make in (in_body.simple_shear, in_body_contact.rings, in_body_contact.hertz_chain)
+        for given in options or ({},):
+            more = dict(given)
+            dimension, long = more.pop("dimension", 2), more.pop("slow", slow)
+            yield Run(problem, make, scheme, dimension, MATERIAL, more, long)
+
+    solid, contact = {"dimension": 3}, in_body_contact
+    for cells in ({"cells": 13}, {"cells": 26}):
+        yield from runs("E1", in_body.vibration, cells, solid | cells)
+    yield from runs("E11", in_body.under_gravity, {}, solid)
+    many = [{"cells": cells} for cells in (50, 100, 200)]
+    yield from runs("E2", in_body.two_bars, *many, {"cells": 100, "speed": 0.1}, solid)
+    yield from runs("rod", in_body.rod_energy, many[0], many[2])
+    yield from runs("E2b", in_body.unequal_bars, {}, {"cells": 100})
+    yield from runs("E3", in_body.rigid_translation, {}, solid)
+    yield from runs("E3", in_body.free_fall, {}, solid)
+    yield from runs("E3", written.spinning_disc, {"cells": 10}, {"cells": 20})
+    yield from runs("E4", in_body.simple_shear)
+    discs = {"cells": 40}, {"cells": 80}, {"model": "elastic"}
+    yield from runs("E5", contact.sulsky_discs, *discs)
+    yield from runs("E6", contact.rings, {"cell_mm": 1.25}, {"cell_mm": 0.8})
+    yield from runs("E9b", in_body.five_bars, *many[1:])
+    yield from runs("E9b", contact.three_discs)
+    yield from runs("E9b", contact.many_bodies, {}, solid | {"bodies": 5, "steps": 300})
+    yield from runs("E9b", contact.renumbering, {}, solid | {"steps": 100, "slow": True})
+    spheres = solid | {"speed": 1.0, "slow": True}
+    for cells in ({"cells": 6}, {"cells": 6, "speed": 4.0}, {"cells": 10, "offsets": ("0.5",)}):
+        yield from runs("E10", contact.offset_spheres, spheres | cells)
+    for cells in (solid | {"cells": 10}, solid | {"cells": 20, "slow": True}):
+        yield from runs("C1", contact.hertz_wall, cells)
+        yield from runs("C1", written.hertz_spheres, cells)
+        yield from runs("C2", contact.hertz_chain, cells)
+    yield from runs("E8", contact.sliding_block, {}, {"across": 16})
+    yield from runs("E8", contact.sticking_block)
+    yield from runs("oblique", contact.oblique_impact, {}, {"slip": 0.05}, {"cells": 32}, solid)
+    sphere = solid | {"cells": 5, "slow": True}
+    yield from runs("E9", contact.roll_down, {"cells": 8}, {"cells": 16}, sphere)
+    yield from runs("E9", written.rolling_disc, {"cells": 8}, {"cells": 16})
+    yield from runs("C5", contact.rolling_on_discs, {"cells": 8}, {"cells": 16, "slow": True})
+    yield from runs("C6", contact.disc_column, {"cells": 10}, {})
+
+
 _SECONDS = (
     *(bars.five_bars, rolling.rolling_on_discs, incline.rolling, chain.disc_column),
     *(written.spinning_disc, examples.sod_tube),
@@ -221,12 +270,13 @@ def _with_others_slow(runs: Iterable[Run]) -> Iterator[Run]:
     for run in runs:
         fine = run.options.get("cells", 0) >= (200 if run.dimension == 2 else 26)
         seconds = run.make in _SECONDS or fine
-        other = run.basis.partition("~")[0] != DEFAULT
+        other = run.basis.partition("~")[0] not in (DEFAULT, MATERIAL)
         long = (seconds and other) or (fine and run.make is bars.five_bars)
         yield replace(run, slow=run.slow or long)
 
 
 _WRITTEN = list(_runs())
 # Runs that differ in their factor alone are one with the default's.
-_ALL = {run.title: run for run in [*_WRITTEN, *_with_defaults(_WRITTEN), *_with_impulses()]}
+_OTHERS = [*_with_defaults(_WRITTEN), *_with_impulses(), *_in_body()]
+_ALL = {run.title: run for run in [*_WRITTEN, *_OTHERS]}
 RUNS = list(_with_others_slow(_ALL.values()))

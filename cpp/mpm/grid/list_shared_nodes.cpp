@@ -1,7 +1,6 @@
 // Which nodes several patches hold, and who owns them.
 #include <algorithm>
 #include <bit>
-#include <cassert>
 #include <utility>
 
 #include "mpm/grid/shared_nodes.hpp"
@@ -119,10 +118,11 @@ void list_shared_nodes(TileGrid<D>& grid, Threads& threads) {
     list_of(patches, patch).count(patch.shape.node_count, patch.shared);
   });
   // What still holds is read where it has been, for which the memory of the nodes lends room.
-  // There is: an entry has two bytes, the line of its node 64.
   const std::span<std::byte> idle = grid.nodes.idle();
-  assert(lists.used * sizeof(SharedEntry<D>) <= idle.size());
-  auto* const before = reinterpret_cast<SharedEntry<D>*>(idle.data());
+  const std::size_t bytes = lists.used * sizeof(SharedEntry<D>);
+  if (bytes > idle.size()) make_room(lists.aside, bytes, bytes + bytes / 16);
+  auto* const before =
+      reinterpret_cast<SharedEntry<D>*>(bytes > idle.size() ? lists.aside.data() : idle.data());
   std::copy_n(lists.entries.data(), lists.used, before);
   lists.used = 0;
   lists.first_before.resize(patches.size());

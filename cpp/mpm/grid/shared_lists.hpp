@@ -46,6 +46,8 @@ struct SharedLists {
   // Scratch, for each patch: its list is made anew, and where it was before.
   std::vector<std::uint8_t> outdated;
   std::vector<std::size_t> first_before;
+  // Where the memory of the nodes lends too little: those that are kept have lists, and lend none.
+  AlignedArray<std::byte> aside;
 };
 
 }  // namespace mpm

@@ -78,7 +78,7 @@ std::size_t all_patches(const TileGrid<D>& grid) {
 template <int D>
 std::size_t bytes_of(const TileGrid<D>& grid) {
   return grid.nodes.numbers.bytes() + grid.kept.numbers.bytes() + grid.shared.entries.bytes() +
-         grid.patches.capacity() * sizeof(Patch<D>);
+         grid.shared.aside.bytes() + grid.patches.capacity() * sizeof(Patch<D>);
 }
 
 }  // namespace mpm

@@ -43,8 +43,12 @@ void set_velocity(Simulation<D>& simulation, int number, std::span<const double>
   start_affine(domain, meant);
   find_kept_velocities(domain, meant);
   Ledger& ledger = domain.ledger;
-  ledger.external += kinetic_energy(domain) - before;
-  ledger.set_kinetic(kinetic_energy(domain), -kinetic_excess(domain.kept_spins));
+  const double now = kinetic_energy(domain), ahead = -kinetic_excess(domain.kept_spins);
+  // Of nodes that lie in bodies: what they have more than these is another one by now.
+  if (has_kept_nodes(domain))
+    ledger.time_integration -= before - (ledger.kinetic - ledger.kept_ahead) - ahead;
+  ledger.external += now - before;
+  ledger.set_kinetic(now, ahead);
   ledger.momentum = momentum(domain);
   ledger.angular.start += angular_totals(part_sums(domain)).all - turned;
   simulation.watch.steps.start_from(ledger.made(), ledger.load_work);

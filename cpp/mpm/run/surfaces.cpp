@@ -210,6 +210,7 @@ void exchange_state(const Domain<D>& domain, Surfaces<D>& surfaces, StateStream&
     if (part.as_one)
       stream.array(std::span(surfaces.places).subspan(part.first_point, part.points));
   stream(surfaces.stored_push, surfaces.stored_rub, surfaces.touching, surfaces.touching_max);
+  stream(surfaces.deepest.body, surfaces.deepest.overlap, surfaces.deepest.place);
   if (stream.restores()) surfaces.places_of_lists.resize(surfaces.points.size());
   if (surfaces.meet) {
     stream.array(std::span(surfaces.places_of_lists));

@@ -14,6 +14,7 @@ namespace {
 // moved by half of it. From them those that are read in each step are taken, with a margin of their
 // own.
 constexpr double margin = 1.2, margin_of_awake = 0.3;  // spacings
+constexpr double pressed_from = 0.1;                   // spacings
 constexpr std::int64_t steps_between_speeds = 10;      // at most
 constexpr std::int32_t no_body = -1;  // of places that points are bonded to, which nothing touches
 
@@ -196,7 +197,11 @@ void find_near_points(Domain<D>& domain) {
   const bool anew = !known || !(surfaces.moved < 0.5 * margin * e);
   const bool measures = known && (anew || domain.step % steps_between_speeds == 0);
   if (anew || measures) tell_all_places(domain);
-  if (measures) surfaces.closing = closing_speed(domain);
+  // What is pressed slows down, and longer steps at the largest forces would make energy: the step
+  // of a hit lasts until it is over.
+  const bool pressed = surfaces.deepest.overlap > pressed_from * e;
+  if (measures)
+    surfaces.closing = std::max(closing_speed(domain), pressed ? surfaces.closing : 0.0);
   if (anew) {
     make_near_lists(domain);
     surfaces.places_of_lists = surfaces.places;
