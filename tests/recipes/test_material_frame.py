@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from in_body import CELL, DENSITY, SPEED, E, energies, frame_case, period, run_to_end
+from in_body import CELL, DENSITY, SPEED, E, energies, frame_case, frame_tables, period, run_to_end
 from mpm3dpp import Case, Simulation, _core, open_results, run_case
 from same_bits import check_same_bits
 from worlds import check_worlds
@@ -241,3 +241,19 @@ def test_another_world_is_the_same(dimension: int, averages: bool) -> None:
 def test_the_same_bits(dimension: int, averages: bool, tmp_path: Any) -> None:
     """With any number of threads, stages fused or not, and after a restart."""
     check_same_bits(several(dimension, averages), tmp_path)
+
+
+def test_many_nodes_in_a_body_beside_one_that_moves_through_the_grid() -> None:
+    """Lists of shared nodes, kept where they were, find no room with the few nodes in space."""
+    block = {"shape": {"box": {"lower": [0, 0], "upper": [200 * CELL, 100 * CELL]}}}
+    tables = frame_tables(2, block, 2e-3, contact={"enabled": False})
+    plate = {"box": {"lower": [-3 * CELL, 0], "upper": [0, 34 * CELL]}}
+    tables["body"]["plate"] = {
+        "material": "m",
+        "shape": plate,
+        "motion": {"velocity": [10.0, 0.0]},
+    }
+    simulation = Simulation(Case.model_validate(tables))
+    simulation.advance(120)
+    assert simulation.step == 120
+    assert np.abs(simulation.column("a", "velocity")).max() == 0.0

@@ -16,8 +16,8 @@ from mpm3dpp.case.grid import CONTACT, FACES
 
 from .parts import Filled
 
-_FASTEST = 0.2
-"""Speed of meeting over that of waves from which springs make energy; from .3 none holds."""
+_FASTEST = 0.25
+"""Speed of meeting over that of waves above which points lie as deep as springs reach."""
 
 
 def surface_notes(case: Case, bodies: Filled) -> list[str]:
@@ -31,9 +31,9 @@ def surface_notes(case: Case, bodies: Filled) -> list[str]:
             if speed > _FASTEST * waves:
                 found.append(
                     f"{key_text(case.part_path(name))} and {other} approach at "
-                    f"{speed / waves:.2g} of the speed of its waves, {waves:.3g} m/s: surfaces "
-                    f"make energy from {_FASTEST:g} on and may go through each other from 0.3 on; "
-                    'give both frame = "updated"'
+                    f"{speed / waves:.2g} of the speed of its waves, {waves:.3g} m/s: above "
+                    f"{_FASTEST:g} of it surfaces may go through each other where they are thin or "
+                    'fold; give both frame = "updated" if a run warns of that'
                 )
                 break
     return found
