@@ -122,8 +122,6 @@ void def_acting(SimulationClass& simulation) {
            }),
            nb::arg("body_a"), nb::arg("body_b"), nb::arg("mu"), nb::arg("restitution") = 1.0)
       .def("bond", of_any([](auto& s, int a, int b) {
-             if (s.domain.surfaces.exist())
-               throw std::invalid_argument("bodies on nodes of their own are bonded at the start");
              set_pair_law(s.domain, a, b, {0.0, true, 0.0, 1.0});
            }),
            nb::arg("body_a"), nb::arg("body_b"))

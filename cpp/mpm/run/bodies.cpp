@@ -202,6 +202,8 @@ void set_pair_law(Domain<D>& domain, int a, int b, const PairLaw& law) {
     throw std::invalid_argument("friction must be a finite number >= 0");
   if (!leads_group(domain, a) || !leads_group(domain, b))
     throw std::invalid_argument("a pair needs two groups, each given by its first body");
+  if (law.bonded && domain.surfaces.exist())
+    throw std::invalid_argument("bodies on nodes of their own are bonded at the start");
   set_law(domain.contact_settings, a, b, law);
 }
 
