@@ -101,7 +101,7 @@ def _of_case(case: Case, name: str) -> Iterator[tuple[str, str]]:
         remedy = "give bonded = true in [[contact.pair]], which holds what touches at the start"
         yield "does not go with contact.bonded, of bodies that share nodes", remedy
     if case.contact_enabled and others:
-        rule = f"does not go with contact with {others[0]}, which has another, yet"
+        rule = f"does not go with contact with {others[0]}, which has another frame, yet"
         yield rule, f'give all frame = "{MATERIAL}", contact.enabled = false, or {updated[5:]}'
     if case.contact_enabled:
         yield from ((rule, f"leave it out, or {updated}") for rule in _of_contact(case))

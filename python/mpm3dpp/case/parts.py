@@ -160,9 +160,12 @@ class ContactPair(CaseModel):
         if len(names) != 2:
             raise violation("must have two names", "give two", value=names, path=(name,))
         given = (self.friction, self.restitution, self.interference)
-        if all(one is None for one in given) != self.bonded:
+        if self.bonded and any(one is not None for one in given):
+            rule = "is bonded, which goes without friction, restitution and interference"
+            raise violation(rule, "leave these out, or bonded")
+        if not self.bonded and all(one is None for one in given):
             remedy = "give one of them, for example friction = 0.3"
-            raise violation("must have either friction or bonded = true", remedy)
+            raise violation("must have friction, restitution or bonded = true", remedy)
         return self
 
 

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mpm3dpp.base.errors import key_text
+from mpm3dpp.base.errors import CaseError, key_text
+from mpm3dpp.base.frames import UPDATED
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.frame import in_body
 from mpm3dpp.case.grid import CONTACT, FACES
@@ -24,19 +25,54 @@ def surface_notes(case: Case, bodies: Filled) -> list[str]:
     """Return a sentence for each entry on nodes of its own that meets something too fast."""
     if not case.contact.enabled:
         return []
-    found = []
+    found, told = [], set()
     for name in in_body(case):
         waves = case.material[case.parts()[name].material].sound_speed()
         for other, speed in _meetings(case, bodies, name):
-            if speed > _FASTEST * waves:
+            pair = frozenset((key_text(case.part_path(name)), other))
+            if speed > _FASTEST * waves and pair not in told:
+                told.add(pair)
                 found.append(
                     f"{key_text(case.part_path(name))} and {other} approach at "
                     f"{speed / waves:.2g} of the speed of its waves, {waves:.3g} m/s: above "
                     f"{_FASTEST:g} of it surfaces may go through each other where they are thin or "
-                    'fold; give both frame = "updated" if a run warns of that'
+                    'fold; give frame = "updated" if a run warns of that'
                 )
                 break
     return found
+
+
+def bond_mistakes(case: Case, bodies: Filled) -> Iterator[CaseError]:
+    """Yield the bonded pairs on nodes of their own of which the boxes are too far apart to touch.
+
+    What lies near by its boxes is judged by the core, which knows the surfaces.
+    """
+    own = in_body(case)
+    for k, pair in enumerate(case.contact.pair):
+        if not (pair.bonded and pair.bodies and set(own) & set(pair.bodies)):
+            continue
+        first, second = (bodies.parts[name] for name in pair.bodies)
+        faces = 0.5 * (
+            first.spacing + second.spacing
+        )  # Particles begin half a spacing behind them.
+        one, other = first.survey, second.survey
+        off = np.maximum(
+            other.lower.min(axis=0) - one.upper.max(axis=0),
+            one.lower.min(axis=0) - other.upper.max(axis=0),
+        )
+        if (gap := float(off.max()) - faces) > 0.25 * min(first.spacing, second.spacing):
+            yield bond_of_nothing(case, k, f", {gap:.3g} m apart,")
+
+
+def bond_of_nothing(case: Case, k: int, why: str = "") -> CaseError:
+    """Return the mistake of a pair that is bonded, on nodes of its own, and touches nowhere."""
+    pair = case.contact.pair[k]
+    names = " and ".join(pair.bodies or pair.materials or [])
+    rule = (
+        f"of {names}{why} holds nothing: bodies on nodes of their own are bonded where they touch"
+    )
+    remedy = f'bring them together, or give frame = "{UPDATED}"'
+    return case.error(("contact", "pair", k, "bonded"), f"{rule} at the start", remedy)
 
 
 def _meetings(case: Case, bodies: Filled, name: str) -> Iterator[tuple[str, float]]:

@@ -16,7 +16,7 @@ from mpm3dpp.case.grid import CONTACT, FACES
 
 from .parts import Filled
 
-_ON_WALL = 0.75  # Spacings from a wall within which the particles of a body on it begin.
+_ON_WALL = 0.25  # Spacings from a wall within which a body on it begins.
 _AWAY = 2.0  # Cells from a wall from which no node beyond it belongs to a body.
 
 
@@ -71,7 +71,8 @@ def _off_walls(case: Case, bodies: Filled) -> Iterator[tuple[str, str, str, floa
         for name in in_body(case) if wall in HOLDING else ():
             part = bodies.parts[name]
             seen = part.survey.upper if at_end else part.survey.lower
-            off = np.abs(seen[:, d] - corners[at_end][d])
+            # Particles begin half a spacing behind the faces of bodies.
+            off = np.abs(seen[:, d] - corners[at_end][d]) - 0.5 * part.spacing
             off = np.where(off > _ON_WALL * part.spacing, off, np.inf)
             if np.isfinite(off[k := int(off.argmin())]):
                 yield name, part.names[k], f"grid.box.walls.{FACES[face]}", float(off[k])
@@ -87,8 +88,8 @@ def wall_mistakes(case: Case, bodies: Filled) -> Iterator[CaseError]:
     for entry, body, wall, off in _off_walls(case, bodies):
         if off < _AWAY * case.grid.cell_size:
             rule = (
-                f"of {body} begins {off:.3g} m from {wall}: slip and fixed walls hold nodes in "
-                "bodies that begin on them"
+                f"does not go with {wall} {off:.3g} m from where {body} begins: slip and fixed "
+                "walls hold nodes in bodies that begin on them"
             )
             remedy = f'move it there or {_AWAY:g} cells away, or make the wall "{CONTACT}"'
             yield case.error((*case.part_path(entry), "frame"), rule, remedy)

@@ -92,6 +92,7 @@ def _block(case: Case, material: str, particles: int) -> Case:
         material=material,
         shape=Box(lower=(0.0,) * D, upper=(edge * cell,) * D),
         particles_per_cell=_ALONG,
+        frame=_frame_of(case, material),
     )
     return _with(case, material, body={"block": body})
 
@@ -101,13 +102,20 @@ def _heap(case: Case, grains: Grains, part: FilledPart) -> Case:
     D = case.grid.dimension
     along = min(_GRAINS[D], max(1, round(len(part.names) ** (1 / D))))
     lattice = GrainLattice(lower=(0.0,) * D, count=[along] * D, radius=float(grains.radii().mean()))
-    heap = Grains(material=grains.material, lattice=lattice, spacing=part.spacing, fill=grains.fill)
+    heap = Grains(
+        material=grains.material,
+        lattice=lattice,
+        spacing=part.spacing,
+        fill=grains.fill,
+        frame=grains.frame,
+    )
     return _with(case, grains.material, grains={"heap": heap})
 
 
 def _with(case: Case, material: str, **parts: dict[str, Body] | dict[str, Grains]) -> Case:
     """Return a case with the numerics of another one, and one of its materials."""
-    run, contact = case.run, case.contact.model_copy(update={"pair": []})
+    # Nothing of it depends on a restitution, which is for one frame alone.
+    run, contact = case.run, case.contact.model_copy(update={"pair": [], "restitution": 1.0})
     return Case(
         grid=Grid(
             dimension=case.grid.dimension, cell_size=case.grid.cell_size, basis=case.grid.basis
@@ -117,6 +125,11 @@ def _with(case: Case, material: str, **parts: dict[str, Body] | dict[str, Grains
         contact=contact,
         **parts,
     )
+
+
+def _frame_of(case: Case, material: str) -> str:
+    """Return the frame of the bodies of a material; where they have both, that of the first."""
+    return next(part.frame for part in case.parts().values() if part.material == material)
 
 
 def _material_of_most(parts: Iterable[FilledPart]) -> str:

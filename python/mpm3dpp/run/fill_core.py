@@ -9,13 +9,14 @@ from typing import Any
 from mpm3dpp import _core
 from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError
-from mpm3dpp.base.frames import MATERIAL, UPDATED
+from mpm3dpp.base.frames import MATERIAL
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.frame import in_body
 from mpm3dpp.case.pairs import listed_pairs
 from mpm3dpp.fill.initial import overburden
 from mpm3dpp.fill.interference import Interference
 from mpm3dpp.fill.parts import Filled
+from mpm3dpp.fill.surface_notes import bond_of_nothing
 from mpm3dpp.fill.surface_points import point_spacing
 from mpm3dpp.ranks.world import World
 
@@ -114,10 +115,7 @@ def _check_bonds(case: Case, held: set[tuple[int, int]]) -> None:
         ends = [numbers for numbers, listed in bonds.items() if listed is pair]
         if not pair.bonded or not ends or held & set(ends):
             continue
-        names = " and ".join(pair.bodies or pair.materials or [])
-        rule = f"of {names} holds nothing: bodies on nodes of their own are bonded where they touch"
-        remedy = f'bring them together, or give frame = "{UPDATED}"'
-        raise case.error(("contact", "pair", k, "bonded"), f"{rule} at the start", remedy)
+        raise bond_of_nothing(case, k)
 
 
 def _refusal(case: Case, sentence: str) -> CaseError:

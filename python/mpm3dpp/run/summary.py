@@ -262,6 +262,8 @@ def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
     contact = "none, the bodies are bonded" if case.contact.bonded else "none"
     if case.contact_enabled:
         contact = f"{case.contact.detection} detection, {_response(case)}"
+        if in_body(case):
+            contact = f"between surfaces, restitution {case.contact.restitution:g}"
         contact += f", friction {case.contact.friction:g}"
     lines += [
         f"total: {particles:,} particles, mass {mass:.6g} kg{per_metre}, "
