@@ -178,6 +178,20 @@ NodeWork advance(const Domain<D>& domain, const Patch<D>& patch, const NodeBlock
   return damped.done;
 }
 
+/// Of the mirrored weight over the time step [W]: it went into the force (ghost_weight, subtracted)
+/// and is work of gravity, by the velocity of the image before the step.
+template <int D>
+Work work_of_mirrored_weight(const Domain<D>& domain, const Patch<D>& patch,
+                             const NodeBlock<D>& block) {
+  Work work;
+  for_each_ghost_weight(domain, patch, block, [&](int image, int a, double weight) {
+    const double dv = block.increment(a)[image];
+    work.first += weight * (block.velocity(a)[image] - dv);
+    work.second += weight * dv;
+  });
+  return work;
+}
+
 }  // namespace
 
 /// Eq. (8), m_i dv_i = (f_i + m_i g) dt, with eq. (10) in the form m_i g: exact as gravity is
@@ -187,7 +201,7 @@ template <int D>
 void advance_nodes(Domain<D>& domain) {
   auto& grid = domain.grid;
   const double dt = domain.time_step;
-  const bool absorb = grid.walls.absorb(), loaded = domain.has_loads();
+  const bool absorb = grid.walls.absorb();
   for_each_patch(domain, prescribed, [&](std::size_t p) { advance_prescribed_nodes(domain, p); });
   for_each_patch(domain, deformable | free_rigid | in_body, [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
@@ -206,14 +220,7 @@ void advance_nodes(Domain<D>& domain) {
       push = work_of_faces(block, own, dt, true);
       friction = work_of_faces(block, own, dt, false);
     }
-    // The mirrored weight went into the force (ghost_weight, subtracted); it is work of gravity, so
-    // it is taken from there and put here. By the velocity of the image before the step.
-    double weight_first = 0.0, weight_second = 0.0;
-    for_each_ghost_weight(domain, patch, block, [&](int image, int a, double weight) {
-      const double dv = block.increment(a)[image];
-      weight_first += weight * (block.velocity(a)[image] - dv);
-      weight_second += weight * dv;
-    });
+    const Work mirrored = work_of_mirrored_weight(domain, patch, block);
     // Particles near a wall read nodes beyond it: positions by the velocity, eq. (16), velocities
     // by the increment, eq. (17).
     reflect_at_walls(grid, patch, block, velocity_at);
@@ -221,7 +228,7 @@ void advance_nodes(Domain<D>& domain) {
     if (domain.pool_of(patch).at.growth_limit >= 0) reflect_volumes(grid, patch, block);
     // After the reflection, as a piece may load a node beyond a wall: a force and a velocity that
     // are both turned do the same work as those of the image, which has the force.
-    if (loaded) loads = work_of_loads(domain, p);
+    if (domain.has_loads()) loads = work_of_loads(domain, p);
     if (domain.has_body_forces()) loads += work_of_body_force(domain, p);
     // Nodes in bodies go with the new velocities all the step, others with the mean of both: what
     // is a half of the increments' work for these is all of it.
@@ -231,19 +238,19 @@ void advance_nodes(Domain<D>& domain) {
     add_impulses(domain, p, block, own);
     // What is left is work of internal and contact forces; loads, walls and gravity have terms
     // of their own in the ledger, with the velocity in the middle of the step.
-    sums.force_work = dt * (done.work + weight_first) - loads.first - dashpots.first - push.first -
-                      friction.first;
+    sums.force_work = dt * (done.work + mirrored.first) - loads.first - dashpots.first -
+                      push.first - friction.first;
     sums.load_first = loads.first;
     sums.load_second = loads.second;
     sums.dashpot_first = dashpots.first;
     sums.dashpot_second = dashpots.second;
     sums.wall_push = push;
     sums.wall_friction = friction;
-    sums.gravity_first = dt * (done.gravity_first - weight_first);
-    sums.gravity_second = 0.5 * halves * dt * (done.gravity_second - weight_second);
-    if (patch.keeps) add_work_of_surfaces(domain, p);
-    if (patch.keeps)
-      count_kept_nodes(domain, move_kept_nodes(domain, patch, block, own, sums), sums);
+    sums.gravity_first = dt * (done.gravity_first - mirrored.first);
+    sums.gravity_second = 0.5 * halves * dt * (done.gravity_second - mirrored.second);
+    if (!patch.keeps) return;
+    add_work_of_surfaces(domain, p);
+    count_kept_nodes(domain, move_kept_nodes(domain, patch, block, own, sums), sums);
   });
 }
 

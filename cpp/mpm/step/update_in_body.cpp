@@ -10,6 +10,37 @@
 namespace mpm {
 namespace {
 
+/// With averaged pressures forces have worked on a part of the change of volume alone.
+template <class T, int D>
+class AveragedWork {
+ public:
+  AveragedWork(ParticlePool<D>& pool, bool averages)
+      : pool_(pool),
+        averages_(averages),
+        q_(column(pool.at.viscosity_pressure)),
+        taken_(column(pool.at.force_pressure)) {}
+
+  /// Particles are deformed from `before` to F; ln J / J before is left for average_in_body().
+  template <class Rows>
+  void add(const Rows& rows, const Mat<T, D>& before, const Mat<T, D>& F) {
+    if (!averages_) return;
+    const T growth = log(determinant(F) / determinant(before));
+    const T beyond = q_ ? load(taken_, rows) - load(q_, rows) : load(taken_, rows);
+    not_done_ += of_valid(rows, load(pool_.volume(), rows) * beyond * growth);
+    store(pool_.v(1), rows, growth);
+  }
+  /// Half of the work that the stress of the particles would have done more, by that at the start.
+  double half_not_done() const { return 0.5 * sum(not_done_); }
+
+ private:
+  const double* column(int at) const { return at >= 0 ? pool_.columns.component(at) : nullptr; }
+
+  ParticlePool<D>& pool_;
+  bool averages_;
+  const double *q_, *taken_;
+  T not_done_ = T(0.0);
+};
+
 template <int W, int D, BasisModel B>
 [[gnu::noinline, gnu::flatten]] void update_patch(Domain<D>& domain, std::size_t p,
                                                   const B& basis) {
@@ -26,12 +57,7 @@ template <int W, int D, BasisModel B>
   const NodeStrides<D> stride(patch.shape);
   const LocalPosition<D> local_position(grid, pool);
   const T per_cell_size(1.0 / grid.cell_size);
-  // With averaged pressures the forces have worked on a part of the change of volume alone.
-  const bool averages = material.averages_volume;
-  const auto column = [&](int at) { return at >= 0 ? pool.columns.component(at) : nullptr; };
-  const double *const q = column(pool.at.viscosity_pressure), *const taken =
-                                                                  column(pool.at.force_pressure);
-  T not_worked(0.0);
+  AveragedWork<T, D> averaged(pool, material.averages_volume);
   StressSums& sums = domain.sums[p].stress;
   MaterialBlock<D> block;
   const auto flush = [&] {
@@ -60,19 +86,14 @@ template <int W, int D, BasisModel B>
         L[i][j].store(block.gradient[i][j] + block.count);
       });
       unrolled<D>([&](auto a) { store(pool.x(a), rows, load(pool.listed(a), rows) + u[a]); });
-      if (averages) {
-        const T growth = log(determinant(F) / determinant(before));
-        const T beyond = q ? load(taken, rows) - load(q, rows) : load(taken, rows);
-        not_worked += of_valid(rows, load(pool.volume(), rows) * beyond * growth);
-        store(pool.v(1), rows, growth);
-      }
+      averaged.add(rows, before, F);
       store(pool.v(0), rows, sqrt(largest_stretch_squared(inverse_of(F))));
       unrolled<W>([&](auto k) { block.row[block.count + k] = rows[k]; });
       block.count += static_cast<std::size_t>(rows.count);
     });
   });
   if (block.count > 0) flush();
-  sums.internal -= 0.5 * sum(not_worked);
+  sums.internal -= averaged.half_not_done();
   // Half of the work that the new stress does in a step with these velocities: of the mean of the
   // stress and of that at the start there are the sums.
   const double mean = sums.internal + sums.plastic + sums.viscous + sums.damped + sums.bounded;
