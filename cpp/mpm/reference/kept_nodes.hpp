@@ -162,13 +162,18 @@ struct KeptNodes {
     if (!begun) L = now - excess * spin_of(I, now, axes);
     begun = true;
     L += acts * moment;
-    const Vector3 wanted = I * spin_of(of_body, L, axes);
+    if constexpr (D == 3) {  // as it is turned in the middle of the step, of which L is
+      const Matrix3 turned = rotation(0.5 * step.dt * spin_of(of_body, L, axes));
+      of_body = turned * of_body * transposed(turned);
+    }
+    spin = spin_of(of_body, L, axes);
+    Vector3 wanted = of_body * spin + excess * spin;
+    if constexpr (D == 2) wanted = {0.0, 0.0, wanted[2]};
     const Vector3 alpha = (1.0 / acts) * spin_of(I, wanted - now - acts * moment, axes);
     for (auto& [i, node] : body.nodes) {
       const Vector3 f = node.m * cross(alpha, place(i) - c);
       for (int a = 0; a < D; ++a) node.f[a] += f[a];
     }
-    spin = spin_of(of_body, L, axes);
     kinetic_excess = 0.5 * excess * dot(spin, spin);
   }
 

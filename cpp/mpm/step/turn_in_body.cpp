@@ -134,7 +134,13 @@ Vector3 lacking(const Domain<D>& domain, const Patch<D>& patch, const TurningSum
   turning.begun = true;
   turning.momentum += acts * (sums.moment + moment);
   turning.spin = spin_of(of_body, turning.momentum, axes);
-  turning.of_nodes = I * turning.spin;
+  if constexpr (D == 3) {
+    // L is that of the middle of the step, when the body has turned by half of it.
+    const Matrix3 turned = rotation(0.5 * domain.time_step * turning.spin);
+    of_body = turned * of_body * transposed(turned);
+    turning.spin = spin_of(of_body, turning.momentum, axes);
+  }
+  turning.of_nodes = of_body * turning.spin + turning.excess * turning.spin;
   if constexpr (D == 2) turning.of_nodes = {0.0, 0.0, turning.of_nodes[2]};
   const Vector3 lacks = turning.of_nodes - now - acts * sums.moment;
   return acts > 0.0 ? (1.0 / acts) * spin_of(I, lacks, axes) : Vector3::zero();
