@@ -9,10 +9,14 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from in_body import CELL, DENSITY, E, energies, frame_tables, period, run_to_end
 from mpm3dpp import Case, Simulation
 
-CELL, DENSITY, E = 1e-3, 1000.0, 1e7
 MODE = 4.730040745  # of a free bar, the first; Timoshenko, Vibration Problems in Engineering
+
+
+def rms(values: Any) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
 
 
 def noise_of_pressure(simulation: Simulation) -> tuple[float, float]:
@@ -24,7 +28,7 @@ def noise_of_pressure(simulation: Simulation) -> tuple[float, float]:
         terms = np.column_stack([np.ones(len(near)), places[near] - places[k]])
         fit, *_ = np.linalg.lstsq(terms, pressure[near], rcond=None)
         beyond.append(pressure[k] - fit[0])
-    return tuple(float(np.sqrt(np.mean(np.square(x)))) for x in (beyond, pressure))  # type: ignore[return-value]
+    return rms(beyond), rms(pressure)
 
 
 def bending(averages: bool, nu: float) -> tuple[float, float, float]:
@@ -35,46 +39,28 @@ def bending(averages: bool, nu: float) -> tuple[float, float, float]:
     length = 32 * CELL
     x, part = f"({MODE / length} * x)", 0.982502215
     form = f"cosh({x}) + cos({x}) - {part} * (sinh({x}) + sin({x}))"
-    case = Case.model_validate(
-        {
-            "grid": {"dimension": 2, "cell_size": CELL},
-            "run": {"end_time": 1.0},
-            "material": {
-                "m": {
-                    "density": DENSITY,
-                    "strength": {"elastic": {"E": E, "nu": nu}},
-                    "volume_averaging": averages,
-                }
-            },
-            "body": {
-                "a": {
-                    "material": "m",
-                    "frame": "material",
-                    "shape": {"box": {"lower": [0, 0], "upper": [length, 4 * CELL]}},
-                    "velocity": [0.0, {"expression": form}],
-                }
-            },
-        }
-    )
-    simulation = Simulation(case)
+    body = {
+        "shape": {"box": {"lower": [0, 0], "upper": [length, 4 * CELL]}},
+        "velocity": [0.0, {"expression": form}],
+    }
     stiff = E / (1.0 - nu**2) * (4 * CELL) ** 2 / 12.0 / DENSITY
     exact = 2.0 * np.pi / ((MODE / length) ** 2 * np.sqrt(stiff))
-    first, seen, noise = simulation.column("a", "velocity")[:, 1], [], []
-    while simulation.time < 5.0 * exact:
-        simulation.advance(20)
-        velocity = simulation.column("a", "velocity")[:, 1]
-        seen.append((simulation.time, float((first * velocity).mean())))
-        if len(seen) % 20 == 0:
+    tables = frame_tables(2, body, 5.0 * exact, nu)
+    tables["material"]["m"]["volume_averaging"] = averages
+    simulation = Simulation(Case.model_validate(tables))
+    first, noise = simulation.column("a", "velocity")[:, 1], []
+    steps = iter(range(10**6))
+
+    def look(simulation: Simulation) -> float:
+        if next(steps) % 20 == 19:
             noise.append(noise_of_pressure(simulation))
-    times, values = np.array(seen).T
-    k = np.flatnonzero(np.diff(np.sign(values)))
-    at = times[k] - values[k] * (times[k + 1] - times[k]) / (values[k + 1] - values[k])
-    history = simulation.history()
-    energy = np.asarray(history["kinetic"] + history["internal"])
+        return float((first * simulation.column("a", "velocity")[:, 1]).mean())
+
+    columns, (times, values) = run_to_end(simulation, 20, look)
     beyond, all_of_it = np.mean(noise, axis=0)
-    period = 2.0 * (at[-1] - at[0]) / (len(at) - 1)
-    assert np.abs(history["residual"]).max() < 1e-12 * energy[0]
-    return period / exact, beyond / all_of_it, float(np.abs(energy / energy[0] - 1.0).max())
+    assert np.abs(columns["residual"]).max() < 1e-12 * columns["kinetic"][0]
+    change = float(np.abs(energies(columns) - 1.0).max())
+    return period(times, values) / exact, beyond / all_of_it, change
 
 
 def test_it_takes_noise_and_no_energy_of_what_is_nearly_incompressible() -> None:

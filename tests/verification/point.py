@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -14,6 +15,22 @@ from .points import ball, block
 from .scene import Array, Scene
 
 E = 1e6
+
+
+def translation_figures(
+    fly: Callable[[float], tuple[Array, Array, Array]], h: float
+) -> list[Figure]:
+    """Return the figures of a flight by `fly(shift)`: places without the shift, v, and stresses."""
+    x, v, stress = fly(0.0)
+    _, v_far, stress_far = fly(8 * h)
+    return [
+        judge("E3", "translation: largest stress over E", np.abs(stress).max() / E),
+        judge("E3", "shift by whole cells: largest difference of velocity",
+              np.abs(v - v_far).max()),
+        judge("E3", "shift by whole cells: largest difference of stress",
+              np.abs(stress - stress_far).max()),
+        report("translation across", float(np.abs(x - 10.0).max() / h), "cells"),
+    ]  # fmt: skip
 
 
 def rigid_translation(
@@ -31,16 +48,7 @@ def rigid_translation(
         scene.start().run(0.4)
         return scene.x(a) - shift, scene.v(a), scene.stress(a)
 
-    x, v, stress = fly(0.0)
-    _, v_far, stress_far = fly(8 * h)
-    return [
-        judge("E3", "translation: largest stress over E", np.abs(stress).max() / E),
-        judge("E3", "shift by whole cells: largest difference of velocity",
-              np.abs(v - v_far).max()),
-        judge("E3", "shift by whole cells: largest difference of stress",
-              np.abs(stress - stress_far).max()),
-        report("translation across", float(np.abs(x - 10.0).max() / h), "cells"),
-    ]  # fmt: skip
+    return translation_figures(fly, h)
 
 
 def free_fall(

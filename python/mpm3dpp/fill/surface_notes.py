@@ -52,15 +52,14 @@ def bond_mistakes(case: Case, bodies: Filled) -> Iterator[CaseError]:
         if not (pair.bonded and pair.bodies and set(own) & set(pair.bodies)):
             continue
         first, second = (bodies.parts[name] for name in pair.bodies)
-        faces = 0.5 * (
-            first.spacing + second.spacing
-        )  # Particles begin half a spacing behind them.
+        # Particles begin half a spacing behind the faces.
+        behind = 0.5 * (first.spacing + second.spacing)
         one, other = first.survey, second.survey
         off = np.maximum(
             other.lower.min(axis=0) - one.upper.max(axis=0),
             one.lower.min(axis=0) - other.upper.max(axis=0),
         )
-        if (gap := float(off.max()) - faces) > 0.25 * min(first.spacing, second.spacing):
+        if (gap := float(off.max()) - behind) > 0.25 * min(first.spacing, second.spacing):
             yield bond_of_nothing(case, k, f", {gap:.3g} m apart,")
 
 
