@@ -36,8 +36,10 @@ def frame_case(*about: Any, **more: Any) -> Case:
     return Case.model_validate(frame_tables(*about, **more))
 
 
-def run_to_end(simulation: Simulation, every: int, look: Any = None) -> tuple[dict, np.ndarray]:
-    """Return the columns of all steps; times, and what `look` sees every so many steps."""
+def run_and_look(
+    simulation: Simulation, every: int, look: Any = None
+) -> tuple[dict, list[tuple[float, Any]]]:
+    """Run to the end; return the columns of all steps, and times with what `look` sees then."""
     core, end = simulation.core, simulation.case.run.end_time
     rows, seen = [core.history()], []
     while simulation.time < end:
@@ -45,7 +47,12 @@ def run_to_end(simulation: Simulation, every: int, look: Any = None) -> tuple[di
         rows.append(core.history())
         if look is not None:
             seen.append((simulation.time, look(simulation)))
-    columns = dict(zip(core.history_columns, np.concatenate(rows).T, strict=True))
+    return dict(zip(core.history_columns, np.concatenate(rows).T, strict=True)), seen
+
+
+def run_to_end(simulation: Simulation, every: int, look: Any = None) -> tuple[dict, np.ndarray]:
+    """Return the columns of all steps; times, and the number that `look` sees then."""
+    columns, seen = run_and_look(simulation, every, look)
     return columns, np.array(seen).T
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from in_body import blocks
+from in_body import blocks, run_and_look
 from mpm3dpp import Case, Simulation, _core
 from same_bits import check_same_bits
 from worlds import check_worlds
@@ -29,15 +29,8 @@ def part(simulation: Simulation, name: str, body: int = 0) -> float:
 
 def run(case: Case, every: int = 50, look: Any = None) -> tuple[Simulation, dict, list]:
     """Run a case; return it, the columns of all its steps, and what `look` sees."""
-    simulation, seen = Simulation(case), []
-    core, end = simulation.core, case.run.end_time
-    rows = [core.history()]
-    while simulation.time < end:
-        simulation.advance(every, end)
-        rows.append(core.history())
-        if look is not None:
-            seen.append((simulation.time, look(simulation)))
-    columns = dict(zip(core.history_columns, np.concatenate(rows).T, strict=True))
+    simulation = Simulation(case)
+    columns, seen = run_and_look(simulation, every, look)
     largest = max(columns["kinetic"].max(), columns["internal"].max())
     assert np.abs(columns["residual"]).max() < 1e-12 * largest
     return simulation, columns, seen
