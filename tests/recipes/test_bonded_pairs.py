@@ -120,8 +120,8 @@ def test_a_run_goes_on_with_the_same_bits(tmp_path: Path, response: str) -> None
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("bonded = true", "bonded = true\nfriction = 0.1", "either friction or bonded = true"),
-        ("bonded = true", "", "either friction or bonded = true"),
+        ("bonded = true", "bonded = true\nfriction = 0.1", "bonded, which goes without friction"),
+        ("bonded = true", "", "must have friction, restitution or bonded = true"),
         ('damping = { mass = "30 1/s" }', 'motion = "fixed"', "bonded, and neither deforms"),
     ],
 )
