@@ -152,7 +152,13 @@ void start_parts(Domain<D>& domain) {
   surfaces.places.clear();
   surfaces.given_of.clear();
   const Comm& comm = *domain.grid.partition.comm;
-  for (const PieceOfSurface<D>& piece : all_pieces(domain)) add_piece(surfaces, comm.rank(), piece);
+  surfaces.points.reserve(given.size());
+  surfaces.places.reserve(given.size());
+  surfaces.given_of.reserve(given.size());
+  for (PieceOfSurface<D>& piece : all_pieces(domain)) {
+    add_piece(surfaces, comm.rank(), piece);
+    piece = {};  // its memory is that of the next parts
+  }
   if (!comm.alone()) surfaces.others.places_at_start = surfaces.places;
   surfaces.place_on_hosts.assign(surfaces.hosts.size(), 0);
   surfaces.place_of_motion.assign(surfaces.hosts.size(), 0);
