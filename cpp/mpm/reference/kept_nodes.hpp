@@ -17,6 +17,8 @@ struct KeptNodes {
   std::vector<Load<D>> loads{};            // pieces as they were at the start
   Vector3 L = Vector3::zero(), spin = L;   // of the body about its centre
   bool begun = false;
+  // Has it so much more inertia than its nodes have beyond it, and no wall that holds it?
+  bool turns = true;
   double kinetic_excess = 0.0;  // of the nodes [J]
 
   /// m_i = sum m_p N_ip once, and v_i as they are given by the index of the node.
@@ -26,10 +28,13 @@ struct KeptNodes {
       step.for_each_node(p.X, [&](const Index<D>& i, double N, const Vec<double, D>&) {
         body.nodes[i].m += p.m * N;
       });
+    step.fold(body, [](Node<D>& node, Node<D>& image, auto&&) { image.m += node.m; });
     for (auto& [i, node] : body.nodes) {
       node.v = velocity(i);
+      step.hold(i, node.v);
       u[i] = Vec<double, D>::zero();
     }
+    step.reflect(body, &Node<D>::v);
     Mat<double, D> one{};
     for (int a = 0; a < D; ++a) one[a][a] = 1.0;
     F.assign(body.particles.size(), one);
@@ -108,6 +113,12 @@ struct KeptNodes {
     }
   }
 
+  /// What nodes beyond walls are given is their images'.
+  void fold_forces() {
+    step.fold(body,
+              [](Node<D>& node, Node<D>& image, auto&& mirrored) { image.f += mirrored(node.f); });
+  }
+
   /// (P1), (P2) of step/average_in_body.cpp, with b = .95.
   void average() {
     std::map<Index<D>, double> sums;
@@ -134,6 +145,7 @@ struct KeptNodes {
   /// the body changes by the moment of the forces, L_i = I (I - D)^-1 L is that of its nodes, and
   /// what this lacks is given to them by forces m_i alpha x r_i (particles/kept_spin.hpp).
   void turn() {
+    if (!turns) return;
     double M = 0.0;
     Vector3 c = Vector3::zero(), p = c, now = c, moment = c;
     const auto place = [&](const Index<D>& i) {
@@ -177,13 +189,15 @@ struct KeptNodes {
     kinetic_excess = 0.5 * excess * dot(spin, spin);
   }
 
-  /// v_i += dt' f_i / m_i, u_i += dt v_i, (M3).
+  /// v_i += dt' f_i / m_i, u_i += dt v_i, (M3); walls hold what lies on them.
   void advance_nodes() {
     for (auto& [i, node] : body.nodes) {
+      step.hold(i, node.f);
       node.dv = (0.5 * (step.dt + step.dt_before) / node.m) * node.f;
       node.v += node.dv;
-      u[i] += step.dt * node.v;
     }
+    step.reflect(body, &Node<D>::v);
+    for (auto& [i, node] : body.nodes) u[i] += step.dt * node.v;
   }
 
   /// x_p, F_p, (M1), and the stress by L dt = (F_p - F_p before) (F_p before)^-1, (M4).

@@ -5,6 +5,7 @@
 #include <map>
 #include <vector>
 
+#include "mpm/layout/tile.hpp"
 #include "mpm/materials/strength/elastic.hpp"
 #include "mpm/particles/body.hpp"
 

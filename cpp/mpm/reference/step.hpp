@@ -245,12 +245,12 @@ struct Step {
   /// Nodes beyond a wall belong to a mirrored body. add(node, image, mirrored): what particles give
   /// to the node is the image's, vectors mirrored.
   template <class F>
-  void fold(Body<D>& b, F&& add) {
+  void fold(Body<D>& b, F&& add) const {
     for (auto& [i, node] : b.nodes)
       for_image(b, i, [&](Node<D>& image, auto&& mirrored) { add(node, image, mirrored); });
   }
   /// Such a node moves as its image does.
-  void reflect(Body<D>& b, Vec<double, D> Node<D>::* velocity) {
+  void reflect(Body<D>& b, Vec<double, D> Node<D>::* velocity) const {
     if (b.prescribed()) return;
     for (auto& [i, node] : b.nodes)
       for_image(b, i, [&](Node<D>& image, auto&& mirrored) {
@@ -258,7 +258,7 @@ struct Step {
       });
   }
   template <class F>
-  void for_image(Body<D>& b, const Index<D>& i, F&& f) {
+  void for_image(Body<D>& b, const Index<D>& i, F&& f) const {
     const auto image = walls.image(i);
     if (!image) return;
     f(b.nodes[image->node], [image](Vec<double, D> v) {

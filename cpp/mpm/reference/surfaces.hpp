@@ -1,0 +1,232 @@
+#pragma once
+// Contact between the surfaces of bodies on nodes of their own, in the reference step: the
+// equations of docs/theory/surface-contact.md as they stand there. Every point looks at every
+// point of every other body; nothing is listed, and forces are derivatives of the energy.
+#include "mpm/reference/surface_points.hpp"
+#include "mpm/reference/surface_touch.hpp"
+
+namespace mpm::reference {
+
+/// That which leaves a place where it is, and those of walls that are slip or fixed, of edges and
+/// corners too.
+template <int D, class F>
+void for_each_mirror(const Step<D>& step, F&& f) {
+  Index<D> low, high;
+  low.fill(-1), high.fill(1);
+  for_each_index<D>(low, high, [&](const Index<D>& side) {
+    Mirror<D> mirror;
+    for (int a = 0; a < D; ++a) {
+      const auto k = static_cast<std::size_t>(a);
+      mirror.sign[a] = side[k] == 0 ? 1.0 : -1.0;
+      mirror.twice[a] = side[k] > 0 ? 2.0 * step.h * step.walls.cells[k] : 0.0;
+      if (side[k] == 0) continue;
+      const Wall wall = step.walls.face[k][side[k] < 0 ? 0 : 1];
+      if (!step.walls.exist || (wall != Wall::slip && wall != Wall::fixed)) return;
+    }
+    f(mirror);
+  });
+}
+
+template <int D>
+struct Surfaces {
+  const Step<D>& step;
+  double e = 0.0, w = 0.0;  // spacing of points; way over which springs begin [m]
+  std::vector<SurfaceBody<D>> bodies{};
+  std::map<std::pair<std::size_t, std::size_t>, SurfaceLaw> laws{};  // the lower number first
+  SurfaceLaw law{};                                                  // of all others, and of faces
+  std::vector<SurfaceTouch<D>> touches{};                            // of this step
+  using Of = std::tuple<std::size_t, std::size_t, Whom>;             // body, point, whom it touches
+  std::map<Of, double> set_back{};                                   // b [m]
+  std::map<Of, Vec<double, D>> slips{};                              // s [m]
+  Height<D> height{e};
+
+  SurfaceLaw law_of(std::size_t a, std::size_t b) const {
+    const auto found = laws.find(std::minmax(a, b));
+    return found != laws.end() ? found->second : law;
+  }
+
+  /// Before the first step: w is what the fastest particles go in the longest step of a wave over a
+  /// cell, h / 20 at most; and what lies in others is set back, so that springs just begin.
+  void start() {
+    double fastest = 0.0, c = std::numeric_limits<double>::infinity();
+    for (const SurfaceBody<D>& b : bodies) {
+      for (const Particle<D>& p : b.body().particles) fastest = std::max(fastest, norm(p.v));
+      if (b.deforms()) c = std::min(c, 1.0 / std::sqrt(b.compliance() * b.body().material.density));
+    }
+    w = step.h * std::min(fastest / c, 0.05);
+    for_each_touch([&](const SurfaceTouch<D>& t) {
+      if (overlap(t) > -0.5 * w) set_back[{t.body, t.point, t.whom}] = overlap(t) + 0.5 * w;
+    });
+  }
+
+  /// At the end of a step: what acts in the next.
+  void touch() {
+    for (SurfaceBody<D>& b : bodies) {
+      b.clear();
+      for (ContactPoint<D>& c : b.points) b.place(c);
+    }
+    touches.clear();
+    for_each_touch([&](SurfaceTouch<D> t) {
+      const auto b = set_back.find({t.body, t.point, t.whom});
+      if (b != set_back.end()) t.b = b->second;
+      if (overlap(t) > -0.5 * w) touches.push_back(t);
+    });
+    std::map<Of, Vec<double, D>> kept;
+    for (SurfaceTouch<D>& t : touches) {
+      press(t);
+      rub(t, kept);
+    }
+    slips = kept;  // Who parts forgets.
+  }
+
+  double height_over(Whom face, double x) const {
+    const auto axis = static_cast<std::size_t>(axis_of(face));
+    return side_of(face) == 0 ? x : step.h * step.walls.cells[axis] - x;
+  }
+  SurfaceBody<D>& other(const SurfaceTouch<D>& t) {
+    return bodies[static_cast<std::size_t>(t.whom)];
+  }
+  const SurfaceBody<D>& other(const SurfaceTouch<D>& t) const {
+    return bodies[static_cast<std::size_t>(t.whom)];
+  }
+  ContactPoint<D>& point(const SurfaceTouch<D>& t) { return bodies[t.body].points[t.point]; }
+
+  /// o = e - b - e zeta or e / 2 - b - z.
+  double overlap(const SurfaceTouch<D>& t) const {
+    return (is_face(t.whom) ? 0.5 * e : e) - t.b - t.z;
+  }
+
+  /// f(touch) for every point and every face that pushes back and every other body near it.
+  template <class F>
+  void for_each_touch(F&& f) const {
+    for (std::size_t a = 0; a < bodies.size(); ++a)
+      for (std::size_t p = 0; p < bodies[a].points.size(); ++p) {
+        const double A = bodies[a].points[p].A, of_a = bodies[a].compliance();
+        const double H = 0.25 * step.h;
+        for (Whom face = -1; face >= -2 * D && bodies[a].deforms(); --face) {
+          const auto axis = static_cast<std::size_t>(axis_of(face));
+          if (!step.walls.exist || step.walls.face[axis][side_of(face)] != Wall::contact) continue;
+          SurfaceTouch<D> t{a, p, face};
+          t.z = height_over(face, bodies[a].points[p].x[axis_of(face)]);
+          t.k = A / (H * of_a);
+          f(t);
+        }
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+          if (!bodies[a].deforms() && !bodies[b].deforms()) continue;
+          SurfaceTouch<D> t{a, p, static_cast<Whom>(b)};
+          if (!feel(t)) continue;
+          t.k = 0.5 * A / (H * (of_a + bodies[b].compliance()));
+          f(t);
+        }
+      }
+  }
+
+  /// Which points of the other body a point and its images feel, and how high it is over them. Is
+  /// there any? Of its own body those that are more than four cells off in it: it may be folded.
+  bool feel(SurfaceTouch<D>& t) const {
+    const ContactPoint<D>& p = bodies[t.body].points[t.point];
+    const bool itself = t.whom == static_cast<Whom>(t.body);
+    double S = 0.0;
+    for_each_mirror(step, [&](const Mirror<D>& mirror) {
+      for (std::size_t q = 0; q < other(t).points.size(); ++q) {
+        const ContactPoint<D>& c = other(t).points[q];
+        if (itself && !(norm(c.X - p.X) > 4.0 * step.h)) continue;
+        const double weight = height.weight(square(c.x, mirror.place(p.x)));
+        if (!(weight > 0.0)) continue;
+        t.felt.push_back({q, mirror, c.A / std::pow(e, D - 1) * weight});
+        S += t.felt.back().share;
+      }
+    });
+    for (Felt<D>& felt : t.felt) felt.share /= S;
+    if (S > 0.0) t.z = e * height.zeta(S);
+    return S > 0.0;
+  }
+
+  /// What is stored over k: of the force o, which begins softly from o = -w / 2 to w / 2, (S4).
+  template <class T>
+  T stored(const T& o) const {
+    if (std::real(o) >= 0.5 * w) return 0.5 * o * o + w * w / 24.0;
+    const T begun = o + 0.5 * w;
+    return begun * begun * begun / (6.0 * w);
+  }
+
+  /// The energy of the spring of a touch, of the places of p and of the points that it feels, (S3).
+  template <class T>
+  T energy(const SurfaceTouch<D>& t, const Vec<T, D>& p, const std::vector<Vec<T, D>>& q) const {
+    if (is_face(t.whom)) {
+      const T& x = p[axis_of(t.whom)];
+      const T z = side_of(t.whom) == 0 ? x : height_over(t.whom, 0.0) - x;
+      return t.k * stored<T>(0.5 * e - t.b - z);
+    }
+    T S(0.0);
+    for (std::size_t j = 0; j < q.size(); ++j)
+      S += other(t).points[t.felt[j].q].A / std::pow(e, D - 1) *
+           height.weight(square(q[j], t.felt[j].mirror.place(p)));
+    return t.k * stored<T>(e - t.b - e * height.zeta(S));
+  }
+
+  /// - dE/dx to p and to all that it feels. Of E(x + i d) the imaginary part is d dE/dx, exact with
+  /// a d of which the square is nothing (Squire & Trapp 1998).
+  void press(SurfaceTouch<D>& t) {
+    using Complex = std::complex<double>;
+    const auto complex = [](const Vec<double, D>& x) {
+      Vec<Complex, D> z;
+      for (int a = 0; a < D; ++a) z[a] = x[a];
+      return z;
+    };
+    Vec<Complex, D> p = complex(point(t).x);
+    std::vector<Vec<Complex, D>> q;
+    for (const Felt<D>& felt : t.felt) q.push_back(complex(other(t).points[felt.q].x));
+    const auto force_at = [&](Vec<Complex, D>& x) {
+      const double d = 1e-30 * e;
+      Vec<double, D> force;
+      for (int a = 0; a < D; ++a) {
+        x[a].imag(d);
+        force[a] = -std::imag(energy(t, p, q)) / d;
+        x[a].imag(0.0);
+      }
+      return force;
+    };
+    t.push = force_at(p);
+    bodies[t.body].push(point(t), point(t).x, t.push);
+    bodies[t.body].stored_push += std::real(energy(t, p, q));
+    for (std::size_t j = 0; j < q.size(); ++j) {
+      const ContactPoint<D>& c = other(t).points[t.felt[j].q];
+      other(t).push(c, c.x, force_at(q[j]));
+    }
+  }
+
+  double friction_of(const SurfaceTouch<D>& t) const {
+    if (is_face(t.whom)) return step.walls.friction[axis_of(t.whom)][side_of(t.whom)];
+    return law_of(t.body, static_cast<std::size_t>(t.whom)).mu;
+  }
+
+  /// (S2) at x_0 = x_p - z n / 2, on a face its foot: of the memory s what it has along the normal
+  /// by now is turned into the plane, so that it keeps its length.
+  void rub(SurfaceTouch<D>& t, std::map<Of, Vec<double, D>>& kept) {
+    const double f = norm(t.push), mu = friction_of(t), k_t = 0.8 * t.k;
+    const Vec<double, D> n = normalised(t.push);
+    t.place = point(t).x - (is_face(t.whom) ? 1.0 : 0.5) * t.z * n;
+    t.rub = Vec<double, D>::zero();
+    if (!(mu > 0.0 && f > 0.0)) return;
+    Vec<double, D> u = bodies[t.body].velocity(point(t), t.place);
+    for (const Felt<D>& felt : t.felt)
+      u -= felt.share * felt.mirror.vector(
+                            other(t).velocity(other(t).points[felt.q], felt.mirror.place(t.place)));
+    Vec<double, D> s = Vec<double, D>::zero();
+    if (const auto before = slips.find({t.body, t.point, t.whom}); before != slips.end())
+      s = norm(before->second) * normalised(along(before->second, n));
+    s += step.dt * along(u, n);
+    t.slides = norm(s) > mu * f / k_t;
+    if (t.slides) s = (mu * f / k_t) * normalised(s);
+    kept[{t.body, t.point, t.whom}] = s;
+    t.rub = -k_t * s;
+    bodies[t.body].stored_rub += 0.5 * k_t * dot(s, s);
+    bodies[t.body].push(point(t), t.place, t.rub);
+    for (const Felt<D>& felt : t.felt)
+      other(t).push(other(t).points[felt.q], felt.mirror.place(t.place),
+                    felt.mirror.vector(-felt.share * t.rub));
+  }
+};
+
+}  // namespace mpm::reference

@@ -1,0 +1,195 @@
+#pragma once
+// Steps of both of a SurfaceTwin, and what they come to held to each other.
+#include "step/surface_twin.hpp"
+
+namespace mpm::testing {
+
+template <int D>
+class SurfaceComparison {
+ public:
+  SurfaceComparison(Report& report, SurfaceTwin<D>& twin) : report(report), twin_(twin) {
+    for (std::size_t b = 0; b < twin.points.size(); ++b)
+      CHECK_EQUAL(twin.points[b].size(), twin.surfaces.bodies[b].points.size());
+    compare_set_back();
+  }
+
+  /// Another step, of another length than the last.
+  void make_step(double time_step) {
+    Domain<D>& domain = twin_.simulation->domain;
+    reference::Step<D>& step = twin_.step;
+    domain.step_before = step.dt_before = domain.step == 0 ? 0.0 : domain.time_step;
+    domain.time_step = step.dt = time_step * (1.0 + 0.3 * static_cast<double>(domain.step % 2));
+    domain.time_after = domain.time + domain.time_step;
+    for (const std::size_t b : domain.prescribed)
+      domain.bodies[b].motion->begin_step(domain.time, domain.time_after);
+    reference::begin_prescribed_motions(step);
+    for (const Stage<D>& stage : twin_.simulation->stages) {
+      stage.run(domain);
+      after(stage.name);
+    }
+    step.t = domain.time = domain.time_after;
+    ++domain.step;
+  }
+
+  Report& report;
+
+ private:
+  static constexpr double tolerance = 1e-11, cell = SurfaceTwin<D>::cell;
+
+  /// What differs most of vectors, and how large they are.
+  struct Difference {
+    double most = 0.0, largest = 0.0;
+    template <int n>
+    void add(const Vec<double, n>& x, const Vec<double, n>& expected) {
+      const double apart = norm(x - expected);
+      if (!(apart <= most)) most = apart;
+      largest = std::max(largest, norm(expected));
+    }
+  };
+  void check(const Difference& difference, double least = 0.0) {
+    CHECK_CLOSE(difference.most, 0.0, tolerance * std::max(difference.largest, least));
+  }
+
+  void after(std::string_view stage) {
+    if (stage == "exchange forces") {
+      for (reference::SurfaceBody<D>& body : twin_.surfaces.bodies) {
+        if (!body.deforms()) continue;
+        body.kept->map_forces();
+        body.give_to_nodes();
+        body.kept->fold_forces();
+      }
+      compare_forces();
+    }
+    if (stage == "turn bodies on nodes of their own") {
+      for (reference::KeptNodes<D>& kept : twin_.kept) kept.turn();
+      compare_forces();
+    }
+    if (stage == "advance nodes") {
+      for (reference::KeptNodes<D>& kept : twin_.kept) kept.advance_nodes();
+      compare_momenta();
+    }
+    if (stage == "touch surfaces") {
+      for (reference::KeptNodes<D>& kept : twin_.kept) kept.update();
+      twin_.surfaces.touch();
+      compare_particles();
+      compare_surfaces();
+    }
+  }
+
+  /// But for gravity, which stages add later; those of nodes beyond walls are with their images.
+  void compare_forces() {
+    Difference difference;
+    twin_.for_each_node([&](const Index<D>& i, NodeBlock<D>& block, int n, std::size_t b) {
+      if (twin_.step.walls.image(i)) return;
+      const reference::Node<D>& node = twin_.surfaces.bodies[b].body().nodes.at(i);
+      difference.add(block.vector(n, force_at), node.f - node.m * twin_.step.g);
+    });
+    // Those of stresses of a thousandth of E: at the start there are none.
+    check(difference, 1e4 * std::pow(cell, D - 1));
+  }
+  /// m_i v_i: nodes of almost no mass have any velocity.
+  void compare_momenta() {
+    Difference difference;
+    twin_.for_each_node([&](const Index<D>& i, NodeBlock<D>& block, int n, std::size_t b) {
+      const reference::Node<D>& node = twin_.surfaces.bodies[b].body().nodes.at(i);
+      difference.add(block.records[n][mass_at] * block.vector(n, velocity_at), node.m * node.v);
+    });
+    check(difference);
+  }
+  void compare_particles() {
+    const Domain<D>& domain = twin_.simulation->domain;
+    Difference places, deformation;
+    for (const Patch<D>& patch : domain.grid.patches) {
+      const ParticlePool<D>& pool = domain.pool_of(patch);
+      const reference::SurfaceBody<D>& body =
+          twin_.surfaces.bodies[static_cast<std::size_t>(patch.body)];
+      for (const std::uint32_t row : pool.rows(patch)) {
+        places.add(pool.position_of(row), body.body().particles[pool.id[row]].x);
+        for (int k = 0; patch.keeps && k < D * D; ++k)
+          deformation.add(Vec<double, 1>{pool.deformation_part(k)[row]},
+                          Vec<double, 1>{body.kept->F[pool.id[row]][k / D][k % D]});
+      }
+    }
+    CHECK_CLOSE(places.most, 0.0, tolerance * cell);
+    check(deformation);
+  }
+
+  /// f(number of the point in the simulation, its body, its number there).
+  template <class F>
+  void for_each_point(F&& f) {
+    for (std::size_t b = 0; b < twin_.points.size(); ++b)
+      for (std::size_t c = 0; c < twin_.points[b].size(); ++c) f(twin_.points[b][c], b, c);
+  }
+  void compare_set_back() {
+    const Surfaces<D>& fast = twin_.simulation->domain.surfaces;
+    CHECK_EQUAL(fast.set_back.size(), twin_.surfaces.set_back.size());
+    for (const auto& [of, b] : twin_.surfaces.set_back) {
+      const auto& [body, point, whom] = of;
+      CHECK_CLOSE(set_back_of(fast, twin_.points[body][point], whom), b, tolerance * fast.spacing);
+    }
+  }
+
+  void compare_surfaces() {
+    const Surfaces<D>& fast = twin_.simulation->domain.surfaces;
+    const reference::Surfaces<D>& expected = twin_.surfaces;
+    Difference places;
+    for_each_point([&](std::uint32_t k, std::size_t b, std::size_t c) {
+      places.add(fast.places[k], expected.bodies[b].points[c].x);
+    });
+    CHECK_CLOSE(places.most, 0.0, tolerance * fast.spacing);
+    CHECK_EQUAL(fast.touching, expected.touches.size());
+    double push = 0.0, rub = 0.0;
+    for (const reference::SurfaceBody<D>& body : expected.bodies) {
+      push += body.stored_push;
+      rub += body.stored_rub;
+    }
+    CHECK_CLOSE(fast.stored_push, push, tolerance * push);
+    CHECK_CLOSE(fast.stored_rub, rub, tolerance * push);
+    compare_touches();
+    compare_wholes();
+  }
+  /// Each by itself: forces on the point, and the memory of friction.
+  void compare_touches() {
+    const Surfaces<D>& fast = twin_.simulation->domain.surfaces;
+    Difference pushes, rubs, slips;
+    for (const reference::SurfaceTouch<D>& touch : twin_.surfaces.touches) {
+      const std::uint32_t k = twin_.points[touch.body][touch.point];
+      const SurfacePart<D>& part = part_of_point(fast, k);
+      const auto found = std::ranges::find_if(part.touches, [&](const SurfaceTouch<D>& one) {
+        return one.point == k && one.opposite == touch.whom;
+      });
+      const bool is_there = found != part.touches.end();
+      CHECK(is_there);
+      if (!is_there) continue;
+      pushes.add(found->push, touch.push);
+      rubs.add(found->rub, touch.rub);
+      const KeptOfContact<Vec<double, D>> wanted{k, touch.whom, {}};
+      const auto slip = std::ranges::lower_bound(part.slips, wanted, std::less<>{});
+      const auto of = twin_.surfaces.slips.find({touch.body, touch.point, touch.whom});
+      const bool slipped = of != twin_.surfaces.slips.end();
+      CHECK_EQUAL(slip != part.slips.end() && !(wanted < *slip), slipped);
+      if (slipped && slip != part.slips.end()) slips.add(slip->value, of->second);
+    }
+    check(pushes);
+    check(rubs);
+    check(slips);
+  }
+  void compare_wholes() {
+    const Surfaces<D>& fast = twin_.simulation->domain.surfaces;
+    Difference forces, moments;
+    for (std::size_t b = 0; b < twin_.surfaces.bodies.size(); ++b) {
+      const auto at =
+          std::ranges::lower_bound(fast.on_bodies, static_cast<int>(b), {}, &ActingOnBody::body);
+      const bool acts = at != fast.on_bodies.end() && std::cmp_equal(at->body, b);
+      const ActingOnBody on = acts ? *at : ActingOnBody{};
+      forces.add(on.force(), twin_.surfaces.bodies[b].force);
+      moments.add(on.moment(), twin_.surfaces.bodies[b].moment);
+    }
+    check(forces);
+    check(moments);
+  }
+
+  SurfaceTwin<D>& twin_;
+};
+
+}  // namespace mpm::testing

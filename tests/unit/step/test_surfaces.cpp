@@ -1,0 +1,74 @@
+// Contact between surfaces: what the stages of surfaces/ do is what the reference does that tries
+// every pair of points, to rounding; each of its parts in bodies on which it acts.
+#include "step/surface_comparison.hpp"
+
+namespace {
+
+using namespace mpm;
+using namespace mpm::testing;
+
+constexpr double step_of_waves = 0.4 * SurfaceTwin<2>::cell / 180.0;  // .4 h / c of the stiffest
+
+/// A block that falls on a face of the box and leans on another that flies against it, both turned,
+/// of two materials.
+template <int D>
+SurfacesGiven<D> two_blocks(BasisId basis) {
+  SurfacesGiven<D> given;
+  given.basis = basis;
+  given.walls[2] = Wall::contact;
+  TurnedBlock<D> lower, upper;
+  lower.size = upper.size = Vec<double, D>::zero();
+  for (int a = 0; a < D; ++a) {
+    lower.size[a] = upper.size[a] = D == 2 ? 4.0 : 3.5;
+    lower.centre[a] = upper.centre[a] = 10.07;
+    lower.velocity[a] = upper.velocity[a] = 0.0;
+  }
+  lower.centre[1] = 0.5 * lower.size[1] + 0.03;
+  lower.velocity[1] = -3.0;
+  upper.size[0] = 3.0;
+  upper.angle = 0.06;
+  upper.centre[0] = 11.23;
+  upper.centre[1] = lower.centre[1] + lower.size[1] + (D == 2 ? 0.08 : 0.2);
+  upper.velocity[0] = 2.0;
+  upper.velocity[1] = -4.0;
+  given.bodies = {{{lower}}, {{upper}, 2e7, 0.2, 1500.0}};
+  return given;
+}
+
+/// How many points touch a face, and how many another body.
+template <int D>
+std::array<int, 2> count_touches(const SurfaceTwin<D>& twin) {
+  std::array<int, 2> count{};
+  for (const reference::SurfaceTouch<D>& touch : twin.surfaces.touches)
+    ++count[touch.whom < 0 ? 0 : 1];
+  return count;
+}
+
+/// Springs alone: deeper than where they begin softly, and so, and set back.
+template <int D>
+void check_springs(Report& report, BasisId basis) {
+  SurfaceTwin<D> twin(two_blocks<D>(basis));
+  SurfaceComparison<D> comparison(report, twin);
+  std::array<int, 2> most{};
+  double deepest = -1.0;
+  for (int k = 0; k < 20; ++k) {
+    comparison.make_step(step_of_waves);
+    const auto now = count_touches(twin);
+    for (std::size_t i : {0, 1}) most[i] = std::max(most[i], now[i]);
+    for (const auto& touch : twin.surfaces.touches)
+      deepest = std::max(deepest, twin.surfaces.overlap(touch));
+  }
+  CHECK(most[0] >= 8 && most[1] >= 8, most[0], most[1]);
+  CHECK(deepest > 0.5 * twin.surfaces.w && twin.surfaces.w < 0.049 * twin.cell, deepest,
+        twin.surfaces.w);
+  CHECK(!twin.surfaces.set_back.empty());
+}
+
+}  // namespace
+
+void test_surfaces(Report& report) {
+  for (const BasisId basis : {basis_id<QuadraticBSpline>, basis_id<Gimp>}) {
+    check_springs<2>(report, basis);
+    check_springs<3>(report, basis);
+  }
+}
