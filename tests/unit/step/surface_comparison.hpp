@@ -172,7 +172,7 @@ class SurfaceComparison {
     }
     check(pushes);
     check(rubs);
-    check(slips);
+    check(slips, 0.01 * fast.spacing);
   }
   void compare_wholes() {
     const Surfaces<D>& fast = twin_.simulation->domain.surfaces;

@@ -64,11 +64,35 @@ void check_springs(Report& report, BasisId basis) {
   CHECK(!twin.surfaces.set_back.empty());
 }
 
+/// Friction with a face and with a body, each of which has a coefficient of its own: some points
+/// stick and some slide, and what sticks is stored.
+template <int D>
+void check_friction(Report& report, BasisId basis) {
+  SurfacesGiven<D> given = two_blocks<D>(basis);
+  given.friction = 0.1;
+  given.wall_friction[2] = 0.25;
+  given.pairs = {{0, 1, {.friction = 0.4}}};
+  given.bodies[0].blocks[0].velocity[0] = 0.3;
+  if (D == 3) given.bodies[0].blocks[0].velocity[D - 1] = -0.3;
+  SurfaceTwin<D> twin(given);
+  SurfaceComparison<D> comparison(report, twin);
+  std::array<int, 4> count{};  // face, body; sticks, slides
+  for (int k = 0; k < 24; ++k) {
+    comparison.make_step(step_of_waves);
+    for (const auto& touch : twin.surfaces.touches)
+      ++count[(touch.whom < 0 ? 0u : 1u) + (touch.slides ? 2u : 0u)];
+  }
+  for (const int n : count) CHECK(n > 20, count[0], count[1], count[2], count[3]);
+  CHECK(twin.surfaces.bodies[0].stored_rub > 0.0 && twin.surfaces.bodies[1].stored_rub > 0.0);
+}
+
 }  // namespace
 
 void test_surfaces(Report& report) {
   for (const BasisId basis : {basis_id<QuadraticBSpline>, basis_id<Gimp>}) {
     check_springs<2>(report, basis);
     check_springs<3>(report, basis);
+    check_friction<2>(report, basis);
+    check_friction<3>(report, basis);
   }
 }
