@@ -91,6 +91,21 @@ struct SurfaceBody {
     for (const auto& [i, t] : f) kept->body.nodes[i].f += t;
   }
 
+  /// To a rigid body by the laws of Newton and Euler: for as long as forces act on nodes of their
+  /// own, gravity for the step.
+  void push_rigid(const Step<D>& step) {
+    if (deforms() || whole->prescribed()) return;
+    const double acts = 0.5 * (step.dt + step.dt_before);
+    const RigidMotion& motion = whole->motion;
+    double m = 0.0;
+    for (const Particle<D>& p : whole->particles) m += p.m;
+    const Vector3 dv = (acts / m) * force + step.dt * in_space<D>(step.g);
+    const Vector3 spin =
+        spin_of(motion.inertia, acts * (moment - cross(motion.centre, force)), motion.free_axes);
+    for (Particle<D>& p : whole->particles)
+      p.v += from_space<D>(dv + cross(spin, in_space<D>(p.x) - motion.centre));
+  }
+
   void clear() {
     f.clear();
     force = moment = Vector3::zero();

@@ -70,6 +70,10 @@ class SurfaceComparison {
     }
     if (stage == "touch surfaces") {
       for (reference::KeptNodes<D>& kept : twin_.kept) kept.update();
+      for (reference::SurfaceBody<D>& body : twin_.surfaces.bodies) body.push_rigid(twin_.step);
+      project_rigid_velocities(twin_.step);
+      move_rigid_bodies(twin_.step);
+      move_prescribed_bodies(twin_.step);
       twin_.surfaces.touch();
       compare_particles();
       compare_surfaces();

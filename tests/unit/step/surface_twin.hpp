@@ -46,7 +46,8 @@ struct SurfacesGiven {
 template <int D>
 class SurfaceTwin {
  public:
-  static constexpr double cell = 0.01, e = 0.25 * cell;
+  // Points in 3D are coarser, for the reference is slow.
+  static constexpr double cell = 0.01, e = (D == 2 ? 0.25 : 0.5) * cell;
 
   std::unique_ptr<Simulation<D>> simulation;
   reference::Step<D> step;
@@ -190,14 +191,14 @@ class SurfaceTwin {
 
   /// e / 2 under the faces of blocks, nearly evenly, each carried by the nearest particle.
   void add_points(int number, const BlocksGiven<D>& given, reference::SurfaceBody<D>& surface) {
-    constexpr double spacing = 0.25 * (D == 2 ? 0.5 : 1.0);
+    constexpr double spacing = (D == 2 ? 0.5 : 1.0) * e / cell;
     ContactPointsGiven told{{}, {}, {}, e};
     std::vector<double> offsets, areas;
     for (const TurnedBlock<D>& block : given.blocks)
       for (int axis = 0; axis < D; ++axis)
         for (const double side : {-0.5, 0.5}) {
           Vec<double, D> low = Vec<double, D>::zero() - 0.5 * block.size;
-          low[axis] = side * (block.size[axis] - 0.25);
+          low[axis] = side * (block.size[axis] - e / cell);
           for_each_in(low, block.size, spacing, axis, [&](Vec<double, D> at) {
             for (int a = 0; a < D; ++a) at[a] += 0.03 * spacing * any();
             const Vec<double, D> x = place_of(block, at);

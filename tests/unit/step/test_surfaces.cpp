@@ -86,6 +86,53 @@ void check_friction(Report& report, BasisId basis) {
   CHECK(twin.surfaces.bodies[0].stored_rub > 0.0 && twin.surfaces.bodies[1].stored_rub > 0.0);
 }
 
+/// A block that a rigid one hits, which turns, and that lies on one that shakes and turns as it is
+/// prescribed; the two that do not deform overlap, and do nothing to each other.
+template <int D>
+SurfacesGiven<D> rigid_blocks() {
+  SurfacesGiven<D> given = two_blocks<D>(basis_id<QuadraticBSpline>);
+  given.walls[2] = Wall::free;
+  TurnedBlock<D> plate = given.bodies[0].blocks[0], flying = given.bodies[1].blocks[0],
+                 block = plate;
+  plate.velocity[1] = 0.0;
+  block.centre[1] = plate.centre[1] + plate.size[1] + 0.07;
+  block.angle = 0.03;
+  flying.centre[0] = block.centre[0] + 0.5 * (block.size[0] + flying.size[0]) + 0.15;
+  flying.centre[1] = block.centre[1] - 0.6;
+  flying.velocity[0] = -5.0;
+  flying.velocity[1] = 1.0;
+  TimeFunction shakes(3.0);
+  shakes.amplitude = 2.0;
+  shakes.frequency = 3e3;
+  given.bodies = {{{plate}, 1e7, 0.3, 3000.0, BodyKind::prescribed, {1.0, shakes, 0.0}, {}},
+                  {{block}},
+                  {{flying}, 1e7, 0.3, 2000.0, BodyKind::rigid}};
+  given.bodies[0].spin[2] = TimeFunction(30.0);
+  if (D == 3) given.bodies[0].spin[0] = TimeFunction(-20.0);
+  return given;
+}
+
+template <int D>
+void check_rigid(Report& report) {
+  SurfacesGiven<D> given = rigid_blocks<D>();
+  given.friction = 0.3;
+  SurfaceTwin<D> twin(given);
+  SurfaceComparison<D> comparison(report, twin);
+  std::map<std::pair<std::size_t, int>, int> count;
+  const double before = twin.step.bodies[1].motion.velocity[0];
+  for (int k = 0; k < 24; ++k) {
+    comparison.make_step(step_of_waves);
+    for (const auto& touch : twin.surfaces.touches) ++count[{touch.body, touch.whom}];
+  }
+  for (const auto& [a, b] : {std::pair{0, 1}, {1, 0}, {1, 2}, {2, 1}}) {
+    const int n = count[{static_cast<std::size_t>(a), b}];
+    CHECK(n > 20, a, b, n);
+  }
+  CHECK_EQUAL(count.size(), 4u);
+  const RigidMotion& motion = twin.step.bodies[1].motion;
+  CHECK(motion.velocity[0] > 0.99 * before && norm(motion.spin) > 1.0, before, motion.velocity[0]);
+}
+
 }  // namespace
 
 void test_surfaces(Report& report) {
@@ -95,4 +142,6 @@ void test_surfaces(Report& report) {
     check_friction<2>(report, basis);
     check_friction<3>(report, basis);
   }
+  check_rigid<2>(report);
+  check_rigid<3>(report);
 }
