@@ -1,3 +1,4 @@
+#include <array>
 #include <cassert>
 
 #include "mpm/comm/all_sums.hpp"
@@ -9,10 +10,97 @@
 namespace mpm {
 namespace {
 
+/// The middle of a piece: where it is [m], and g(node, N) for the nodes that carry it.
+template <class Place, class Nodes>
+struct CarriedPiece {
+  Place place;
+  Nodes nodes;
+};
+
+/// By the functions of its particle, N_i + d . grad N_i + sum_k b_k d2N_i/dx_k^2, d the way from
+/// there to the piece and b_k those of the basis: of all nodes that the particle gives mass to.
+/// They sum to 1 and have the place of the piece for their mean.
+template <int D, class B>
+auto by_own_functions(const TileGrid<D>& grid, const ParticlePool<D>& pool, const Patch<D>& patch,
+                      const CellRange<D>& cell, std::uint32_t row, const Vec<double, D>& arm,
+                      const B& basis) {
+  std::array<AxisWeights<double, B::nodes>, D> w;
+  std::array<double, D> d, b;
+  Vec<double, D> place;
+  for (int a = 0; a < D; ++a) {
+    const auto k = static_cast<std::size_t>(a);
+    const double xi = local_coordinate(grid.in_cells(pool.listed(a)[row], a), cell.cell[k]);
+    w[k] = basis.along(xi);
+    d[k] = arm[a] / grid.cell_size;
+    b[k] = basis.second_order(xi, d[k]);
+    place[a] = grid.origin[a] + grid.cell_size * (cell.cell[k] + xi - B::own_node + d[k]);
+  }
+  const int first = cell.first_node;
+  const BlockShape<D>& shape = patch.shape;
+  const auto nodes = [=, &shape](auto&& g) {
+    Index<D> low{}, high;
+    high.fill(B::nodes - 1);
+    for_each_index<D>(low, high, [&](Index<D> i) {
+      const auto along = [&](std::size_t a) { return static_cast<std::size_t>(i[a]); };
+      double N = 1.0;
+      for (std::size_t a = 0; a < D; ++a) N *= w[a].N[along(a)];
+      for (std::size_t a = 0; a < D; ++a) {
+        double more = d[a] * w[a].dN[along(a)] + b[a] * B::second_derivative[along(a)];
+        for (std::size_t c = 0; c < D; ++c)
+          if (c != a) more *= w[c].N[along(c)];
+        N += more;
+      }
+      for (std::size_t a = 0; a < D; ++a) i[a] -= B::before;
+      g(first + shape.distance(i), N);
+    });
+  };
+  return CarriedPiece{place, nodes};
+}
+
+/// By the linear functions at the place of the piece, held between the nodes around its particle,
+/// or within the box over which the particle's function is a mean: there all nodes have mass.
+template <int D>
+auto by_linear_functions(const TileGrid<D>& grid, const ParticlePool<D>& pool,
+                         const Patch<D>& patch, const CellRange<D>& cell, std::uint32_t row,
+                         const Vec<double, D>& arm, double reach) {
+  const NodesAround<D> around(grid, pool, patch, cell, row);
+  Index<D> shift{};  // to the nodes around the piece
+  std::array<double, D> xi;
+  for (std::size_t k = 0; k < D; ++k) {
+    const auto a = static_cast<int>(k);
+    const double x = around.place[a] - around.lower[k];
+    // No further than the nodes beside the cell's own, which the block holds: rounding may put x
+    // beyond its cell. The load then acts too deep, by half a spacing at most
+    // (docs/theory/step.md).
+    const int own = cell.cell[k] - around.lower[k];
+    const double low = std::max(std::min(0.0, x - reach), own - 1.0);
+    const double high = std::min(std::max(1.0, x + reach), own + 1.0);
+    xi[k] = std::clamp(x + arm[a] / grid.cell_size, low, high);
+    // With a box the point may lie between the next pair of nodes.
+    shift[k] = xi[k] < 0.0 ? -1 : xi[k] > 1.0 ? 1 : 0;
+    xi[k] -= shift[k];
+  }
+  Vec<double, D> place;
+  for (std::size_t k = 0; k < D; ++k)
+    place[static_cast<int>(k)] =
+        grid.origin[static_cast<int>(k)] + grid.cell_size * (around.lower[k] + shift[k] + xi[k]);
+  const int first = around.first + patch.shape.distance(shift);
+  const BlockShape<D>& shape = patch.shape;
+  assert(first >= 0 && first + shape.corner_offset.back() < shape.node_count);
+  const auto nodes = [=, &shape](auto&& g) {
+    for (int corner = 0; corner < Tile<D>::corners; ++corner) {
+      double N = 1.0;
+      for (std::size_t k = 0; k < D; ++k) N *= corner >> k & 1 ? xi[k] : 1.0 - xi[k];
+      g(first + shape.corner_offset[static_cast<std::size_t>(corner)], N);
+    }
+  };
+  return CarriedPiece{place, nodes};
+}
+
 /// f(force [N], nodes, place [m]) for the pieces of a load that a patch's particles carry; nodes(g)
-/// calls g(node, N) for the nodes around the middle of the piece with their linear functions there.
-/// The force and, once nodes are advanced, its work go through this one loop, at the same places,
-/// so that the work is exactly that of the force given: particles move later.
+/// calls g(node, N) for the nodes that carry the middle of the piece. The force and, once nodes are
+/// advanced, its work go through this one loop, at the same places, so that the work is exactly
+/// that of the force given: particles move later.
 template <int D, class F>
 void for_each_loaded_piece(Domain<D>& domain, std::size_t p, std::size_t l, F&& f) {
   const TileGrid<D>& grid = domain.grid;
@@ -22,49 +110,24 @@ void for_each_loaded_piece(Domain<D>& domain, std::size_t p, std::size_t l, F&& 
   if (load.body != patch.body || !domain.body_of(patch).deforms()) return;
   ParticlePool<D>& pool = domain.pool_of(patch);
   const NodeBlock<D> block = domain.grid.block(p);
-  // The box of the particle's function. Within it the nodes around the piece are among those to
-  // which the particle gives mass.
-  const double reach = half_width(grid.basis, domain.body_of(patch).mean_edge / grid.cell_size);
-  for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
-    const auto number = static_cast<int>(l);
-    for_each_piece(number, pool, cell, [&](std::uint32_t row, SurfacePiece<D>& piece) {
-      const NodesAround<D> around(grid, pool, patch, cell, row);
-      Index<D> shift{};  // to the nodes around the piece
-      double xi[D];
-      for (int a = 0; a < D; ++a) {
-        const auto k = static_cast<std::size_t>(a);
-        const double x = around.place[a] - around.lower[k];
-        // Between the nodes around the particle, or in its box: nodes farther off may have no mass.
-        // No further than the nodes beside the cell's own, which the block holds: rounding may put
-        // x beyond its cell. The load then acts too deep, by half a spacing at most
-        // (docs/theory/step.md).
-        const int own = cell.cell[k] - around.lower[k];
-        const double low = std::max(std::min(0.0, x - reach), own - 1.0);
-        const double high = std::min(std::max(1.0, x + reach), own + 1.0);
-        xi[a] = std::clamp(x + piece.arm[a] / grid.cell_size, low, high);
-        // With a box the point may lie between the next pair of nodes.
-        shift[k] = xi[a] < 0.0 ? -1 : xi[a] > 1.0 ? 1 : 0;
-        xi[a] -= shift[k];
-      }
-      const int first = around.first + patch.shape.distance(shift);
-      assert(first >= 0 && first + patch.shape.corner_offset.back() < patch.shape.node_count);
-      const auto each_node = [&](auto&& g) {
-        for (int corner = 0; corner < Tile<D>::corners; ++corner) {
-          double N = 1.0;
-          for (int a = 0; a < D; ++a) N *= corner >> a & 1 ? xi[a] : 1.0 - xi[a];
-          g(first + patch.shape.corner_offset[static_cast<std::size_t>(corner)], N);
-        }
-      };
-      Vec<double, D> place;
-      for (int a = 0; a < D; ++a) {
-        const auto k = static_cast<std::size_t>(a);
-        place[a] = grid.origin[a] + grid.cell_size * (around.lower[k] + shift[k] + xi[a]);
-      }
-      if (patch.keeps)
-        each_node([&](int node, double N) {
-          for (int a = 0; a < D; ++a) place[a] += N * block.displacements[node][a];
-        });
-      f(load.force_on(piece_in_space(pool, row, piece)), each_node, place);
+  const auto act = [&](std::uint32_t row, const SurfacePiece<D>& piece, const auto& carried) {
+    Vec<double, D> place = carried.place;
+    if (patch.keeps)
+      carried.nodes([&](int node, double N) {
+        for (int a = 0; a < D; ++a) place[a] += N * block.displacements[node][a];
+      });
+    f(load.force_on(piece_in_space(pool, row, piece)), carried.nodes, place);
+  };
+  with_basis(grid, domain.body_of(patch), [&]<BasisModel B>(const B& basis) {
+    for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
+      for_each_piece(
+          static_cast<int>(l), pool, cell, [&](std::uint32_t row, SurfacePiece<D>& piece) {
+            if constexpr (requires { basis.second_order(0.0, 0.0); })
+              act(row, piece, by_own_functions(grid, pool, patch, cell, row, piece.arm, basis));
+            else
+              act(row, piece,
+                  by_linear_functions(grid, pool, patch, cell, row, piece.arm, basis.half_width()));
+          });
     });
   });
 }
@@ -86,11 +149,10 @@ void start_loads(Domain<D>& domain) {
 }
 
 /// f_i += sum over the pieces of N_i(x) f, x the middle of the piece: the surface term of the
-/// equation of motion (Sulsky, Chen & Schreyer 1994). N_i are the linear functions. x is held
-/// between the nodes around the particle, or within the box over which its function is a mean, so
-/// that only nodes with mass are loaded. Linear with GIMP too: its boxes of a uniform stress are in
-/// balance with just these, for the mean of grad N_i over a box is what the divergence theorem
-/// turns into N_i on its surface.
+/// equation of motion (Sulsky, Chen & Schreyer 1994), with functions that are in balance with a
+/// uniform stress as particles give it to nodes. With GIMP and the linear basis these are the
+/// linear ones: the mean of grad N_i over a box is what the divergence theorem turns into N_i on
+/// its surface. B-splines are summed up at points, and have them of their own.
 template <int D>
 void scatter_loads(Domain<D>& domain, std::size_t p) {
   const NodeBlock<D> block = domain.grid.block(p);

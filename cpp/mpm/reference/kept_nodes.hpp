@@ -96,8 +96,8 @@ struct KeptNodes {
   }
 
   /// f_i += sum N_i(X_p + A) f over the pieces, f = -p a or t |a|, with a = cof(F_p) a of the start
-  /// and the size as much larger as that is longer, N_i and the limits of places those of
-  /// reference/loads.hpp; of p and t the means over the time that forces act.
+  /// and the size as much larger as that is longer, N_i those of reference/loads.hpp; of p and t
+  /// the means over the time that forces act.
   void load_surfaces() {
     const double from = step.t - 0.5 * step.dt_before, to = step.t + 0.5 * step.dt;
     for (const Load<D>& load : loads) {
@@ -107,8 +107,8 @@ struct KeptNodes {
         const Vec<double, D> area = product(cofactor(F[piece.particle]), piece.a);
         const double size = piece.size * norm(area) / norm(piece.a);
         const Vec<double, D> f = load.pressure ? -value[0] * area : size * value;
-        for_each_hat_node(step, body.particles[piece.particle].X, piece.middle,
-                          [&](const Index<D>& i, double N) { body.nodes[i].f += N * f; });
+        for_each_loaded_node(step, body.particles[piece.particle].X, piece.middle,
+                             [&](const Index<D>& i, double N) { body.nodes[i].f += N * f; });
       }
     }
   }

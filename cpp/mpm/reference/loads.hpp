@@ -28,9 +28,43 @@ void for_each_hat_node(const Step<D>& step, const Vec<double, D>& particle,
   });
 }
 
-/// f_i += sum N_i(x) f over the pieces, f = -p a or t |a|, of p and t the means over the step; N_i
-/// are the hats and x is the middle of the piece. It is held between the nodes around the particle,
-/// or in the box over which the particle's own function is a mean: there all nodes have mass.
+/// f(i, N) with quadratic B-splines: N_ip + d . grad N_ip + sum_k b_k d2N_ip/dx_k^2, d the way from
+/// the particle to the middle of the piece. b = r (2 a - r) / 2, a = |d_k|, r what is left of the
+/// way from the particle back to the knot when steps of 2 a have been taken off.
+template <int D, class F>
+void for_each_spline_node(const Step<D>& step, const Vec<double, D>& particle,
+                          const Vec<double, D>& d, F&& f) {
+  step.for_each_node(particle, [&](const Index<D>& i, double N, const Vec<double, D>& dN) {
+    double W = N;
+    for (int k = 0; k < D; ++k) {
+      W += d[k] * dN[k];
+      const double a = std::abs(d[k]) / step.h;
+      if (a == 0.0) continue;
+      const double at = particle[k] / step.h, knot = std::floor(at + 0.5) - 0.5;
+      double r = d[k] > 0.0 ? at - knot : knot + 1.0 - at;
+      while (r >= 2.0 * a) r -= 2.0 * a;
+      double second = std::abs(at - i[static_cast<std::size_t>(k)]) < 0.5 ? -2.0 : 1.0;
+      for (int l = 0; l < D; ++l)
+        if (l != k) second *= quadratic(particle[l] / step.h - i[static_cast<std::size_t>(l)]).N;
+      W += 0.5 * r * (2.0 * a - r) * second;
+    }
+    f(i, W);
+  });
+}
+
+/// f(i, N) for the nodes that carry the middle of a piece.
+template <int D, class F>
+void for_each_loaded_node(const Step<D>& step, const Vec<double, D>& particle,
+                          const Vec<double, D>& middle, F&& f) {
+  if (step.spline)
+    for_each_spline_node(step, particle, middle, f);
+  else
+    for_each_hat_node(step, particle, middle, f);
+}
+
+/// f_i += sum N_i(x) f over the pieces, f = -p a or t |a|, of p and t the means over the step; x is
+/// the middle of the piece. N_i are the hats, but with B-splines; for hats x is held between the
+/// nodes around the particle, or in the box over which the particle's own function is a mean.
 template <int D>
 void load_surfaces(Step<D>& step) {
   for (Body<D>& b : step.bodies)
@@ -44,8 +78,8 @@ void load_surfaces(Step<D>& step) {
     for (const Piece<D>& piece : load.pieces) {
       const Vec<double, D> f = load.pressure ? -value[0] * piece.a : piece.size * value;
       load.force += f;
-      for_each_hat_node(step, b.particles[piece.particle].x, piece.middle,
-                        [&](const Index<D>& i, double N) { b.nodes[i].f_load += N * f; });
+      for_each_loaded_node(step, b.particles[piece.particle].x, piece.middle,
+                           [&](const Index<D>& i, double N) { b.nodes[i].f_load += N * f; });
     }
   }
   for (Body<D>& b : step.bodies) {

@@ -72,6 +72,7 @@ struct Pair {
     step.g[1] = -2e4;
     const double edge = simulation->domain.bodies[0].mean_edge / cell;
     step.half_width = half_width(basis, edge);
+    step.spline = basis == basis_id<QuadraticBSpline>;
     step.S = basis == basis_id<QuadraticBSpline>
                  ? std::function<reference::ShapeValue(double)>(reference::quadratic)
                  : [edge](double d) { return reference::gimp(d, 0.5 * edge); };

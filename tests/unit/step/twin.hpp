@@ -70,6 +70,7 @@ struct Twin {
     grid.has_wall_springs = grid.walls.touch();
     reference.S = shape(choice.basis, edge);
     reference.half_width = half_width(choice.basis, edge);
+    reference.spline = choice.basis == basis_id<QuadraticBSpline>;
     domain.time_step = reference.dt = 1e-5;
     domain.step_before = reference.dt_before = 0.9e-5;
     domain.pic_rate = choice.pic_rate;
