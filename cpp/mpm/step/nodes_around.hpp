@@ -1,6 +1,6 @@
 #pragma once
-// The nodes between which a particle lies, for what has linear functions with every basis: loads on
-// surfaces, walls that absorb.
+// The nodes between which a particle lies, for what has linear functions: walls that absorb with
+// every basis, loads on surfaces where it is not the B-splines.
 #include "mpm/domain.hpp"
 #include "mpm/schedule/cell_loop.hpp"
 
