@@ -2,6 +2,8 @@
 // Contact between the surfaces of bodies on nodes of their own, in the reference step: the
 // equations of docs/theory/surface-contact.md as they stand there. Every point looks at every
 // point of every other body; nothing is listed, and forces are derivatives of the energy.
+#include <utility>
+
 #include "mpm/reference/surface_points.hpp"
 #include "mpm/reference/surface_touch.hpp"
 
@@ -76,7 +78,7 @@ struct Surfaces {
       press(t);
       rub(t, kept);
     }
-    slips = kept;  // Who parts forgets.
+    slips = std::move(kept);  // Who parts forgets.
   }
 
   double height_over(Whom face, double x) const {
@@ -176,6 +178,7 @@ struct Surfaces {
     };
     Vec<Complex, D> p = complex(point(t).x);
     std::vector<Vec<Complex, D>> q;
+    q.reserve(t.felt.size());
     for (const Felt<D>& felt : t.felt) q.push_back(complex(other(t).points[felt.q].x));
     const auto force_at = [&](Vec<Complex, D>& x) {
       const double d = 1e-30 * e;
