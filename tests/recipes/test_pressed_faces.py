@@ -57,7 +57,7 @@ def test_a_pressed_bar(frame: str, end: float, per_cell: int) -> None:
 @FRAMES
 @pytest.mark.parametrize(("end", "per_cell"), [(6.24, 2), (5.75, 2), (6.5, 3)])
 def test_a_bar_whose_spacing_is_no_part_of_a_cell(frame: str, end: float, per_cell: int) -> None:
-    """Sums over points .48 and .35 cells apart are not exact integrals of splines: 1 to 4 %."""
+    """Sums over points .52, .48 and .325 cells apart miss the integrals of splines: .4 to 4 %."""
     assert np.abs(pressed(frame, end, per_cell, 0) + 1.0).max() < 0.05
 
 
