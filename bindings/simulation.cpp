@@ -98,11 +98,11 @@ void def_acting(SimulationClass& simulation) {
            nb::arg("particles"), nb::arg("areas"), nb::arg("sizes"), nb::arg("arms"))
       .def("add_surface",
            of_any([](auto& s, int body, const std::vector<std::uint32_t>& particles,
-                     const Input& offsets, const Input& areas, double spacing) {
-             add_surface(s, body, {particles, span_of(offsets), span_of(areas), spacing});
+                     const Input& away, const Input& normals, const Input& areas, double e) {
+             add_surface(s, body, {particles, span_of(away), span_of(normals), span_of(areas), e});
            }),
-           nb::arg("body"), nb::arg("particles"), nb::arg("offsets"), nb::arg("areas"),
-           nb::arg("spacing"))
+           nb::arg("body"), nb::arg("particles"), nb::arg("offsets"), nb::arg("normals"),
+           nb::arg("areas"), nb::arg("spacing"))
       .def("add_body_force",
            of_any([](auto& s, const std::vector<int>& bodies,
                      const std::vector<Expression::Program>& value) {

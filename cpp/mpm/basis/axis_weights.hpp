@@ -22,8 +22,8 @@ struct AxisWeights {
 /// `odd_at_fixed_walls`: beyond a fixed wall the nodes move the other way than their images before
 /// it, so that nothing moves at the wall; else they are held. `second_moment`: sum over the nodes
 /// of N_i (x_i - x)^2 along the axis [cells^2], if it is the same at all places; else 0. One that
-/// has `second_order()` and `second_derivative` gives loads on faces to nodes by them, others by
-/// linear functions (loads/load_surfaces.cpp).
+/// has `second_order()` and `second_derivative` gives what acts on faces to nodes by them, others
+/// by linear functions (loads/load_surfaces.cpp).
 template <class B>
 concept BasisModel = requires(const B basis, double xi) {
   { B::name } -> std::convertible_to<std::string_view>;

@@ -17,8 +17,7 @@ struct KeptNodes {
   std::vector<Load<D>> loads{};            // pieces as they were at the start
   Vector3 L = Vector3::zero(), spin = L;   // of the body about its centre
   bool begun = false;
-  // Has it so much more inertia than its nodes have beyond it, and no wall that holds it?
-  bool turns = true;
+  bool turns = true;            // else walls hold it, so that it is a part of what turns
   double kinetic_excess = 0.0;  // of the nodes [J]
 
   /// m_i = sum m_p N_ip once, and v_i as they are given by the index of the node.
@@ -35,6 +34,7 @@ struct KeptNodes {
       u[i] = Vec<double, D>::zero();
     }
     step.reflect(body, &Node<D>::v);
+    for (const auto& [i, node] : body.nodes) turns = turns && step.walls.constrained_axes(i) == 0;
     Mat<double, D> one{};
     for (int a = 0; a < D; ++a) one[a][a] = 1.0;
     F.assign(body.particles.size(), one);

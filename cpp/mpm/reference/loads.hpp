@@ -28,20 +28,21 @@ void for_each_hat_node(const Step<D>& step, const Vec<double, D>& particle,
   });
 }
 
-/// f(i, N) with quadratic B-splines: N_ip + d . grad N_ip + sum_k b_k d2N_ip/dx_k^2, d the way from
-/// the particle to the middle of the piece. b = r (2 a - r) / 2, a = |d_k|, r what is left of the
-/// way from the particle back to the knot when steps of 2 a have been taken off.
+/// f(i, W) with quadratic B-splines: N_ip + d . grad N_ip + sum_k b_k d2N_ip/dx_k^2, d the way from
+/// the particle to a place. b = r (2 a - r) / 2, a = |out_k|, r what is left of the way from the
+/// particle back to the knot when steps of 2 a have been taken off; `out`, the way from the
+/// particle out of the body, is d for the middle of a piece.
 template <int D, class F>
 void for_each_spline_node(const Step<D>& step, const Vec<double, D>& particle,
-                          const Vec<double, D>& d, F&& f) {
+                          const Vec<double, D>& d, const Vec<double, D>& out, F&& f) {
   step.for_each_node(particle, [&](const Index<D>& i, double N, const Vec<double, D>& dN) {
     double W = N;
     for (int k = 0; k < D; ++k) {
       W += d[k] * dN[k];
-      const double a = std::abs(d[k]) / step.h;
+      const double a = std::abs(out[k]) / step.h;
       if (a == 0.0) continue;
       const double at = particle[k] / step.h, knot = std::floor(at + 0.5) - 0.5;
-      double r = d[k] > 0.0 ? at - knot : knot + 1.0 - at;
+      double r = out[k] > 0.0 ? at - knot : knot + 1.0 - at;
       while (r >= 2.0 * a) r -= 2.0 * a;
       double second = std::abs(at - i[static_cast<std::size_t>(k)]) < 0.5 ? -2.0 : 1.0;
       for (int l = 0; l < D; ++l)
@@ -57,7 +58,7 @@ template <int D, class F>
 void for_each_loaded_node(const Step<D>& step, const Vec<double, D>& particle,
                           const Vec<double, D>& middle, F&& f) {
   if (step.spline)
-    for_each_spline_node(step, particle, middle, f);
+    for_each_spline_node(step, particle, middle, middle, f);
   else
     for_each_hat_node(step, particle, middle, f);
 }

@@ -2,6 +2,7 @@
 // Contact between the surfaces of bodies on nodes of their own, in the reference step: the
 // equations of docs/theory/surface-contact.md as they stand there. Every point looks at every
 // point of every other body; nothing is listed, and forces are derivatives of the energy.
+#include <set>
 #include <utility>
 
 #include "mpm/reference/surface_points.hpp"
@@ -39,6 +40,7 @@ struct Surfaces {
   std::vector<SurfaceTouch<D>> touches{};                            // of this step
   using Of = std::tuple<std::size_t, std::size_t, Whom>;             // body, point, whom it touches
   std::map<Of, double> set_back{};                                   // b [m]
+  std::set<Of> bonded{};                                             // who does not push
   std::map<Of, Vec<double, D>> slips{};                              // s [m]
   Height<D> height{e};
 
@@ -116,7 +118,7 @@ struct Surfaces {
         for (std::size_t b = 0; b < bodies.size(); ++b) {
           if (!bodies[a].deforms() && !bodies[b].deforms()) continue;
           SurfaceTouch<D> t{a, p, static_cast<Whom>(b)};
-          if (!feel(t)) continue;
+          if (bonded.contains({a, p, t.whom}) || !feel(t)) continue;
           t.k = 0.5 * A / (H * (of_a + bodies[b].compliance()));
           f(t);
         }
@@ -191,11 +193,11 @@ struct Surfaces {
       return force;
     };
     t.push = force_at(p);
-    bodies[t.body].push(point(t), point(t).x, t.push);
+    bodies[t.body].push(point(t), t.push);
     bodies[t.body].stored_push += std::real(energy(t, p, q));
     for (std::size_t j = 0; j < q.size(); ++j) {
       const ContactPoint<D>& c = other(t).points[t.felt[j].q];
-      other(t).push(c, c.x, force_at(q[j]));
+      other(t).push(c, force_at(q[j]));
     }
   }
 
@@ -225,10 +227,10 @@ struct Surfaces {
     kept[{t.body, t.point, t.whom}] = s;
     t.rub = -k_t * s;
     bodies[t.body].stored_rub += 0.5 * k_t * dot(s, s);
-    bodies[t.body].push(point(t), t.place, t.rub);
+    bodies[t.body].rub(point(t), t.place, t.rub);
     for (const Felt<D>& felt : t.felt)
-      other(t).push(other(t).points[felt.q], felt.mirror.place(t.place),
-                    felt.mirror.vector(-felt.share * t.rub));
+      other(t).rub(other(t).points[felt.q], felt.mirror.place(t.place),
+                   felt.mirror.vector(-felt.share * t.rub));
   }
 };
 

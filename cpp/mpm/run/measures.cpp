@@ -101,7 +101,7 @@ std::size_t bytes_of_surfaces(const Surfaces<D>& surfaces) {
          size(surfaces.places) + size(surfaces.bonds) + size(surfaces.on_bodies) +
          size(surfaces.moving) + size(surfaces.between_parts) + size(surfaces.on_bodies_by_part) +
          size(surfaces.others.hosts) + size(surfaces.others.places_at_start) +
-         size(surfaces.set_back) + size(surfaces.places_of_lists) + size(surfaces.motions) +
+         size(surfaces.set_back) + size(surfaces.places_of_lists) + size(surfaces.in_touch) +
          size(surfaces.place_of_motion) + size(surfaces.between) + size(surfaces.on_hosts) +
          size(surfaces.place_on_hosts);
 }

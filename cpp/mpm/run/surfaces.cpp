@@ -21,22 +21,24 @@ void add_surface(Simulation<D>& simulation, int number, const ContactPointsGiven
     if (!holds) throw std::invalid_argument("surface of " + body.name + ": " + rule);
   };
   const std::size_t n = given.particles.size();
-  check(given.offsets.size() == n * D && given.areas.size() == n,
-        "offsets must be (points, D), areas (points,)");
+  check(given.offsets.size() == n * D && given.normals.size() == n * D && given.areas.size() == n,
+        "offsets and normals must be (points, D), areas (points,)");
   check(given.spacing > 0.0 && std::isfinite(given.spacing), "spacing must be a finite number > 0");
   Surfaces<D>& surfaces = domain.surfaces;
   check(surfaces.given.empty() || surfaces.spacing == given.spacing,
         "the spacing of points is one for all bodies");
   surfaces.spacing = given.spacing;
   for (std::size_t k = 0; k < n; ++k) {
-    GivenPoint<D> point{number, given.particles[k], {}, given.areas[k]};
+    GivenPoint<D> point{number, given.particles[k], {}, {}, given.areas[k]};
     check(point.particle < body.count, "there is no such particle");
     check(point.area > 0.0 && std::isfinite(point.area), "areas must be finite numbers > 0");
     for (std::size_t a = 0; a < D; ++a) {
       const double offset = given.offsets[k * D + a];
       check(std::isfinite(offset), "offsets must be finite numbers");
       point.offset[static_cast<int>(a)] = offset;
+      point.normal[static_cast<int>(a)] = given.normals[k * D + a];
     }
+    check(std::abs(norm(point.normal) - 1.0) < 1e-9, "normals must be of unit length");
     surfaces.given.push_back(point);
   }
 }
@@ -162,7 +164,8 @@ template <int D>
 bool are_finite(const ForceAtHost<D>& forces) {
   double sum = dot(forces.force, forces.force);
   for (int a = 0; a < D; ++a)
-    for (int b = 0; b < D; ++b) sum += std::abs(forces.moment[a][b]);
+    for (int b = 0; b < D; ++b)
+      sum += std::abs(forces.moment[a][b]) + std::abs(forces.second[a][b]);
   return std::isfinite(sum);
 }
 

@@ -11,7 +11,8 @@ namespace mpm {
 /// Contact points of a body, each carried by a particle.
 struct ContactPointsGiven {
   std::vector<std::uint32_t> particles;  // (n,) their numbers in the body
-  std::span<const double> offsets;       // (n, D) from the particle to the point [m]
+  std::span<const double> offsets;       // (n, D) from the particle to the surface [m]
+  std::span<const double> normals;       // (n, D) out of the body, of unit length
   std::span<const double> areas;         // (n,) [m^2; in 2D m times 1 m]
   double spacing;                        // of the points of all bodies [m]
 };

@@ -34,10 +34,13 @@ class Acting {
       body->moment_of_push += cross(in_space<D>(surfaces_.places[point]), in_space<D>(force));
       return;
     }
-    on(at.host).push.add(force, at.offset);
+    ActingOnHost<D>& host = on(at.host);
+    host.push.add(force, at.surface);
+    const Mat<double, D>& F = deformations_[surfaces_.place_on_hosts[at.host] - 1];
+    host.push.add_moment(force, Fibre<D>(F, at.normal, 0.5 * surfaces_.spacing));
   }
   void rub(std::uint64_t order, std::uint32_t point, const Vec<double, D>& force,
-           const Vec<double, D>& reach, const Vec<double, D>& place) {
+           const PlaceAtHost<D>& reach, const Vec<double, D>& place) {
     const ContactPoint<D>& at = surfaces_.points[point];
     if (ActingOnBody* const body = body_of(order, at)) {
       body->rub += in_space<D>(force);
@@ -82,6 +85,7 @@ class Acting {
     std::uint32_t& place = surfaces_.place_on_hosts[host];
     if (place == 0) {
       surfaces_.on_hosts.push_back({host, {}, {}});
+      deformations_.push_back(deformation_at(domain_, host).F);
       place = static_cast<std::uint32_t>(surfaces_.on_hosts.size());
     }
     return surfaces_.on_hosts[place - 1];
@@ -102,6 +106,7 @@ class Acting {
 
   Domain<D>& domain_;
   Surfaces<D>& surfaces_;
+  std::vector<Mat<double, D>> deformations_;  // F of those that are acted on
 };
 
 }  // namespace mpm

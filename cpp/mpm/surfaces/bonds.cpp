@@ -77,7 +77,11 @@ void add_bonds(Domain<D>& domain) {
   std::vector<std::uint32_t> first;  // of each bond the number of its first point as it was given
   for (const Found& bond : found) {
     GivenPoint<D> place = surfaces.given[surfaces.given_of[bond.nearest]];
-    place.offset += surfaces.places[bond.first] - surfaces.places[bond.nearest];
+    // Half a spacing behind the surface of the other is so far before that of its own.
+    const Vec<double, D>& normal = surfaces.points[bond.first].normal;
+    place.offset += surfaces.places[bond.first] - surfaces.places[bond.nearest] +
+                    (0.5 * surfaces.spacing) * (normal - place.normal);
+    place.normal = normal;
     place.area = 0.0;
     place.number = static_cast<std::uint32_t>(count + first.size());
     first.push_back(surfaces.given_of[bond.first]);

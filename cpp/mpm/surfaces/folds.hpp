@@ -46,7 +46,8 @@ class FoldedBodies {
     const ContactPoint<D>& point = domain_.surfaces.points[c];
     const Host<D>& host = domain_.surfaces.hosts[point.host];
     const int body = domain_.surfaces.parts[host.part].body;
-    return listed_place(domain_.pool_of(domain_.body_at(body)), host.row) + point.offset;
+    return listed_place(domain_.pool_of(domain_.body_at(body)), host.row) + point.surface.away -
+           (0.5 * domain_.surfaces.spacing) * point.normal;
   }
   template <class F>
   static void for_each_point(std::span<const SurfacePart<D>> parts, F&& f) {

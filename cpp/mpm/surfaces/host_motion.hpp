@@ -3,7 +3,7 @@
 #include "mpm/domain.hpp"
 #include "mpm/math/inverse.hpp"
 #include "mpm/schedule/cell_loop.hpp"
-#include "mpm/schedule/choose.hpp"
+#include "mpm/surfaces/around_host.hpp"
 
 namespace mpm {
 
@@ -13,23 +13,39 @@ const Patch<D>& patch_of(const Domain<D>& domain, const Host<D>& host) {
   return domain.grid.patches[domain.surfaces.parts[host.part].patch];
 }
 
+/// f(AroundHost, way to the first node in reach) of a host. Bodies that keep their nodes have three
+/// along an axis.
+template <int D, class F>
+void with_nodes_around(const Domain<D>& domain, const Host<D>& host, F&& f) {
+  const Patch<D>& patch = patch_of(domain, host);
+  const NodeStrides<D> stride(patch.shape);
+  with_basis(domain.grid, domain.body_of(patch), [&]<BasisModel B>(const B& basis) {
+    if constexpr (B::nodes == 3)
+      f(AroundHost<D>(weights_at(basis, host.xi), domain.grid.cell_size, stride),
+        host.first_node + stride.to_first(B::before));
+  });
+}
+
 /// Its motion by the vectors at a number of the records of its nodes.
 template <int number, int D>
 HostMotion<D> motion_of(Domain<D>& domain, const Host<D>& host) {
-  const Patch<D>& patch = patch_of(domain, host);
-  const NodeRecords records = domain.grid.block(patch).records;
-  const NodeStrides<D> stride(patch.shape);
+  const NodeRecords records = domain.grid.block(patch_of(domain, host)).records;
   HostMotion<D> motion;
-  with_basis(domain.grid, domain.body_of(patch), [&]<BasisModel B>(const B& basis) {
-    const auto nodes = field_of<B>(records.from(host.first_node), stride);
-    const auto w = weights_at(basis, host.xi);
-    motion.mean = nodes.template vector<number>(w);
-    const auto gradients = nodes.template gradients<number>(w);
-    for (int a = 0; a < D; ++a)
-      for (int b = 0; b < D; ++b)
-        motion.gradient[a][b] = gradients[static_cast<std::size_t>(a)][b] / domain.grid.cell_size;
+  with_nodes_around(domain, host, [&](const AroundHost<D>& around, int first) {
+    motion = around.motion(records.from(first).at(number));
   });
   return motion;
+}
+
+/// The second derivatives of the displacements around a host [1/m].
+template <int D>
+Mat<double, D> second_derivatives_of(Domain<D>& domain, const Host<D>& host) {
+  const HalfRecords displacements = domain.grid.block(patch_of(domain, host)).displacements;
+  Mat<double, D> second{};
+  with_nodes_around(domain, host, [&](const AroundHost<D>& around, int first) {
+    second = around.second_derivatives(displacements.from(first));
+  });
+  return second;
 }
 
 /// F of a host.
@@ -40,32 +56,30 @@ Mat<double, D> deformation_of(const ParticlePool<D>& pool, const Host<D>& host) 
   return F;
 }
 
-/// t N_ip + (t (x) d) grad_X N_ip to the nodes of a host.
+template <int D>
+Mat<double, D> deformation_of(const Domain<D>& domain, const Host<D>& host) {
+  const SurfacePart<D>& part = domain.surfaces.parts[host.part];
+  return deformation_of(domain.pool_of(domain.body_at(part.body)), host);
+}
+
+/// The deformation of a host of a body that deforms, once find_motions() has found those in touch.
+template <int D>
+HostDeformation<D> deformation_at(const Domain<D>& domain, std::uint32_t number) {
+  const Surfaces<D>& surfaces = domain.surfaces;
+  const Host<D>& host = surfaces.hosts[number];
+  if (surfaces.parts[host.part].foreign)
+    return HostDeformation<D>(host_elsewhere(surfaces, number).deformation);
+  const std::uint32_t place = surfaces.place_of_motion[number];
+  if (place != 0) return surfaces.in_touch[place - 1].deformation;
+  return HostDeformation<D>(deformation_of(domain, host));
+}
+
+/// What acts on a host to its nodes.
 template <int D>
 void give_to_nodes_of(Domain<D>& domain, const Host<D>& host, const ForceAtHost<D>& forces) {
-  const Patch<D>& patch = patch_of(domain, host);
-  const NodeRecords records = domain.grid.block(patch).records;
-  with_basis(domain.grid, domain.body_of(patch), [&]<BasisModel B>(const B& basis) {
-    if constexpr (B::nodes > 2) {  // bodies that keep their nodes have no other
-      const auto w = weights_at(basis, host.xi);
-      Index<D> low{}, high;
-      high.fill(B::nodes - 1);
-      for_each_index<D>(low, high, [&](Index<D> k) {
-        double N = 1.0;
-        Vec<double, D> dN;
-        for (int a = 0; a < D; ++a) dN[a] = 1.0 / domain.grid.cell_size;
-        for (std::size_t a = 0; a < D; ++a) {
-          const auto along = static_cast<std::size_t>(k[a]);
-          N *= w.axis[a].N[along];
-          for (std::size_t b = 0; b < D; ++b)
-            dN[static_cast<int>(b)] *= b == a ? w.axis[a].dN[along] : w.axis[a].N[along];
-        }
-        for (std::size_t a = 0; a < D; ++a) k[a] -= B::before;
-        double* const numbers = records[host.first_node + patch.shape.distance(k)];
-        const Vec<double, D> force = N * forces.force + product(forces.moment, dN);
-        for (int a = 0; a < D; ++a) numbers[force_at + a] += force[a];
-      });
-    }
+  const NodeRecords records = domain.grid.block(patch_of(domain, host)).records;
+  with_nodes_around(domain, host, [&](const AroundHost<D>& around, int first) {
+    around.give(records.from(first).at(force_at), forces);
   });
 }
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "mpm/layout/tile.hpp"
-#include "mpm/math/tensor.hpp"
+#include "mpm/math/inverse.hpp"
 
 namespace mpm {
 
@@ -15,46 +15,99 @@ struct Host {
   Vec<double, D> xi;            // its place in its cell
 };
 
-/// The sums of forces t at places X_p + d of a body, X_p that of the host: t, and t (x) d. They act
-/// on its nodes with t N_ip + (t (x) d) grad_X N_ip, of which force, moment and power are those of
-/// the forces at these places.
+/// A place of a body by the functions of a host, W_i = N_i + d . grad_X N_i + sum_k b_k
+/// d2N_i/dX_k^2 (decision 0071).
+template <int D>
+struct PlaceAtHost {
+  Vec<double, D> away;    // d, from the host to the place, in the body at the start [m]
+  Vec<double, D> second;  // b [m^2]
+};
+
+/// The fibre of a body that was normal to its surface.
+template <int D>
+struct Fibre {
+  Vec<double, D> normal;     // N
+  Vec<double, D> direction;  // F N / |F N|
+  double stretch;            // |F N|
+  double behind;             // how far the point lies behind the surface [m]
+
+  Fibre(const Mat<double, D>& F, const Vec<double, D>& N, double how_far)
+      : normal(N), direction(product(F, N)), stretch(norm(direction)), behind(how_far) {
+    direction = (1.0 / stretch) * direction;
+  }
+};
+
+/// The sums of forces t at places of a body: t, t (x) d and t (x) b. They act on the nodes of the
+/// host by W_i, so that force, moment and power are those of the forces at these places.
 template <int D>
 struct ForceAtHost {
   Vec<double, D> force = Vec<double, D>::zero();  // [N]
-  Mat<double, D> moment{};                        // [N m]
+  Mat<double, D> moment{}, second{};              // [N m; N m^2]
 
-  void add(const Vec<double, D>& t, const Vec<double, D>& d) {
+  void add(const Vec<double, D>& t, const PlaceAtHost<D>& place) {
     force += t;
-    for (int a = 0; a < D; ++a)
-      for (int b = 0; b < D; ++b) moment[a][b] += t[a] * d[b];
+    add_product(moment, t, place.away);
+    add_product(second, t, place.second);
+  }
+  /// As the force acts a way behind, which turns with a fibre but is not stretched.
+  void add_moment(const Vec<double, D>& t, const Fibre<D>& fibre) {
+    const Vec<double, D> aside = t - dot(t, fibre.direction) * fibre.direction;
+    add_product(moment, (-fibre.behind / fibre.stretch) * aside, fibre.normal);
   }
   void add(const ForceAtHost& other) {
     force += other.force;
     for (int a = 0; a < D; ++a)
-      for (int b = 0; b < D; ++b) moment[a][b] += other.moment[a][b];
+      for (int b = 0; b < D; ++b) {
+        moment[a][b] += other.moment[a][b];
+        second[a][b] += other.second[a][b];
+      }
+  }
+  static void add_product(Mat<double, D>& sum, const Vec<double, D>& t, const Vec<double, D>& d) {
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b) sum[a][b] += t[a] * d[b];
   }
 };
 
-/// How a host moves: the mean of its nodes' velocities, and its gradient in the body at the start.
+/// How a host moves: the mean of its nodes' velocities, its gradient in the body at the start, and
+/// its second derivatives along each axis.
 template <int D>
 struct HostMotion {
   Vec<double, D> mean;      // [m/s]
   Mat<double, D> gradient;  // [1/s]
+  Mat<double, D> second;    // [1/m s]
 
-  /// At d from the host, in the body at the start.
-  Vec<double, D> at(const Vec<double, D>& d) const {
+  Vec<double, D> at(const PlaceAtHost<D>& place) const {
     Vec<double, D> v = mean;
     for (int a = 0; a < D; ++a)
-      for (int b = 0; b < D; ++b) v[a] += gradient[a][b] * d[b];
+      for (int b = 0; b < D; ++b)
+        v[a] += gradient[a][b] * place.away[b] + second[a][b] * place.second[b];
     return v;
   }
   /// With forces that act there [W].
   double power(const ForceAtHost<D>& forces) const {
     double sum = dot(forces.force, mean);
     for (int a = 0; a < D; ++a)
-      for (int b = 0; b < D; ++b) sum += forces.moment[a][b] * gradient[a][b];
+      for (int b = 0; b < D; ++b)
+        sum += forces.moment[a][b] * gradient[a][b] + forces.second[a][b] * second[a][b];
     return sum;
   }
+};
+
+/// F of a host, and its inverse.
+template <int D>
+struct HostDeformation {
+  Mat<double, D> F, inverse;
+
+  HostDeformation() = default;
+  explicit HostDeformation(const Mat<double, D>& deformation)
+      : F(deformation), inverse(inverse_of(deformation)) {}
+};
+
+/// A host in touch.
+template <int D>
+struct HostInTouch {
+  HostMotion<D> motion;
+  HostDeformation<D> deformation;
 };
 
 /// What acts on a host in the coming step.

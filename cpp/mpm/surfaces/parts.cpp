@@ -24,11 +24,27 @@ struct PieceOfSurface {
   struct Point {
     std::uint32_t given = 0, host = 0;  // among those given; from the first of the piece
     Vec<double, D> place;               // [m]
+    Vec<double, D> second;              // of PlaceAtHost [m^2]
   };
   PieceHead<D> head;
   std::vector<Point> points{};
   std::vector<Host<D>> hosts{};  // of own ones
 };
+
+/// b of a point, by how far its surface is from its host along the normal: along the surface the
+/// sum over particles is what it should be.
+template <int D>
+Vec<double, D> second_order_of(const Domain<D>& domain, const Patch<D>& patch, const Host<D>& host,
+                               const GivenPoint<D>& point) {
+  const double h = domain.grid.cell_size, away = dot(point.offset, point.normal) / h;
+  Vec<double, D> second = Vec<double, D>::zero();
+  with_basis(domain.grid, domain.body_of(patch), [&]<BasisModel B>(const B& basis) {
+    if constexpr (requires { basis.second_order(0.0, 0.0); })
+      for (int a = 0; a < D; ++a)
+        second[a] = h * h * basis.second_order(host.xi[a], away * point.normal[a]);
+  });
+  return second;
+}
 
 /// The piece of a patch, of the points of its body by their particles. Bodies that do not deform
 /// have one host.
@@ -45,9 +61,12 @@ PieceOfSurface<D> piece_of_patch(const Domain<D>& domain, const Patch<D>& patch,
     if (own.empty()) return;
     make_host();
     for (const GivenPoint<D>& point : own)
-      piece.points.push_back({static_cast<std::uint32_t>(&point - domain.surfaces.given.data()),
-                              static_cast<std::uint32_t>(piece.hosts.size() - 1),
-                              pool.position_of(row) + point.offset});
+      piece.points.push_back(
+          {static_cast<std::uint32_t>(&point - domain.surfaces.given.data()),
+           static_cast<std::uint32_t>(piece.hosts.size() - 1),
+           pool.position_of(row) + point.offset - (0.5 * domain.surfaces.spacing) * point.normal,
+           as_one ? Vec<double, D>::zero()
+                  : second_order_of(domain, patch, piece.hosts.back(), point)});
   };
   if (as_one) {
     for (const std::uint32_t row : pool.rows(patch)) add(row, [] {});
@@ -128,7 +147,8 @@ void add_piece(Surfaces<D>& surfaces, int here, const PieceOfSurface<D>& piece) 
   SurfacePart<D>& part = surfaces.parts.back();
   for (const auto& point : piece.points) {
     const GivenPoint<D>& given = surfaces.given[point.given];
-    surfaces.points.push_back({part.first_host + point.host, given.offset, given.area});
+    surfaces.points.push_back(
+        {part.first_host + point.host, {given.offset, point.second}, given.normal, given.area});
     surfaces.given_of.push_back(point.given);
     surfaces.places.push_back(point.place);
   }
@@ -197,13 +217,18 @@ void place_points(Domain<D>& domain) {
     const ParticlePool<D>& pool = domain.pool_of(domain.body_at(part.body));
     std::uint32_t host = part.first_host;
     Mat<double, D> F = deformation_of(pool, surfaces.hosts[host]);
+    Mat<double, D> second = second_derivatives_of(domain, surfaces.hosts[host]);
     for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
       const ContactPoint<D>& point = surfaces.points[c];
       if (point.host != host) {
         host = point.host;
         F = deformation_of(pool, surfaces.hosts[host]);
+        second = second_derivatives_of(domain, surfaces.hosts[host]);
       }
-      surfaces.places[c] = pool.position_of(surfaces.hosts[host].row) + product(F, point.offset);
+      const Fibre<D> fibre(F, point.normal, 0.5 * surfaces.spacing);
+      surfaces.places[c] = pool.position_of(surfaces.hosts[host].row) +
+                           product(F, point.surface.away) + product(second, point.surface.second) -
+                           fibre.behind * fibre.direction;
     }
   });
 }

@@ -23,7 +23,7 @@ void for_each_own_part(Domain<D>& domain, F&& f) {
 template <int D>
 void find_parts(Domain<D>& domain);
 
-/// x_c = x_p + F_p d, where contact points are by now.
+/// Where contact points are by now, (S0).
 template <int D>
 void place_points(Domain<D>& domain);
 

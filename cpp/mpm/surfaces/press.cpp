@@ -27,12 +27,12 @@ double friction_with(const Domain<D>& domain, int body, Opposite opposite) {
 /// How fast the body of a point moves at a place, as find_motions() has found.
 template <int D>
 Vec<double, D> velocity_of_point(const Domain<D>& domain, std::uint32_t point,
-                                 const Vec<double, D>& reach, const Vec<double, D>& place) {
+                                 const PlaceAtHost<D>& reach, const Vec<double, D>& place) {
   const Surfaces<D>& surfaces = domain.surfaces;
   const std::uint32_t host = surfaces.points[point].host;
   const SurfacePart<D>& part = surfaces.parts[surfaces.hosts[host].part];
   if (part.foreign && !part.as_one) return host_elsewhere(surfaces, host).motion.at(reach);
-  if (!part.as_one) return surfaces.motions[surfaces.place_of_motion[host] - 1].at(reach);
+  if (!part.as_one) return surfaces.in_touch[surfaces.place_of_motion[host] - 1].motion.at(reach);
   const Vector3 v = motion_as_one(domain, part.body).velocity_at(in_space<D>(place));
   Vec<double, D> velocity;
   for (int a = 0; a < D; ++a) velocity[a] = v[a];
@@ -97,9 +97,11 @@ void find_motions(Domain<D>& domain) {
     for (const SurfaceTouch<D>& touch : part.touches) needs(touch.point);
     for (const FeltPoint<D>& felt : part.felt) needs(felt.point);
   }
-  surfaces.motions.resize(surfaces.moving.size());
+  surfaces.in_touch.resize(surfaces.moving.size());
   domain.threads.for_each(surfaces.moving.size(), [&](std::size_t k) {
-    surfaces.motions[k] = motion_of<velocity_at>(domain, surfaces.hosts[surfaces.moving[k]]);
+    const Host<D>& host = surfaces.hosts[surfaces.moving[k]];
+    surfaces.in_touch[k] = {motion_of<velocity_at>(domain, host),
+                            HostDeformation<D>(deformation_of(domain, host))};
   });
 }
 

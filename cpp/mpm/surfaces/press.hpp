@@ -1,22 +1,21 @@
 #pragma once
 #include "mpm/domain.hpp"
-#include "mpm/math/inverse.hpp"
 #include "mpm/surfaces/host_motion.hpp"
 
 namespace mpm {
 
-/// From the host of a point to a place, in the body at the start: d + F^-1 (x - x_c).
+/// A place in the body of a point at the start: d + F^-1 (x - x_s) from its host, x_s where the
+/// point is on the surface.
 template <int D>
-Vec<double, D> reach_of(const Domain<D>& domain, std::uint32_t c, const Vec<double, D>& place) {
+PlaceAtHost<D> reach_of(const Domain<D>& domain, std::uint32_t c, const Vec<double, D>& place) {
   const Surfaces<D>& surfaces = domain.surfaces;
   const ContactPoint<D>& point = surfaces.points[c];
-  const Host<D>& host = surfaces.hosts[point.host];
-  const SurfacePart<D>& part = surfaces.parts[host.part];
-  if (part.as_one) return point.offset;  // nobody asks for it
-  const Mat<double, D> F = part.foreign
-                               ? host_elsewhere(surfaces, point.host).deformation
-                               : deformation_of(domain.pool_of(domain.body_at(part.body)), host);
-  return point.offset + product(inverse_of(F), place - surfaces.places[c]);
+  if (surfaces.parts[surfaces.hosts[point.host].part].as_one)
+    return point.surface;  // not asked for
+  const HostDeformation<D> deformation = deformation_at(domain, point.host);
+  const Fibre<D> fibre(deformation.F, point.normal, 0.5 * surfaces.spacing);
+  const Vec<double, D> surface = surfaces.places[c] + fibre.behind * fibre.direction;
+  return {point.surface.away + product(deformation.inverse, place - surface), point.surface.second};
 }
 
 /// Does friction act at a touch?

@@ -1,7 +1,9 @@
 #pragma once
-// Contact between the surfaces of bodies: plain data. Each body has contact points on the surface
-// that its shape has, each carried by the particle nearest to it, its host. A step ends with
-//   parts.hpp           where they are, x_c = x_p + F_p d
+// Contact between the surfaces of bodies: plain data. Each body has contact points half a spacing e
+// behind the surface that its shape has, each carried by the particle nearest to it, its host:
+//   x_s = x_p + F_p d + sum_k b_k d2u/dX_k^2,   x_c = x_s - (e / 2) F_p N / |F_p N|.          (S0)
+// A step ends with
+//   parts.hpp           where they are, (S0)
 //   near_points.hpp     which may feel each other: lists
 //   overlaps.hpp        which overlap a face of the box or another body, and how deep (felt.hpp)
 //   bonds.hpp           what is bonded pulls
@@ -26,7 +28,8 @@ template <int D>
 struct GivenPoint {
   int body = 0;
   std::uint32_t particle = 0;  // number of its host in the body
-  Vec<double, D> offset;       // from the host to the point, in the body at the start [m]
+  Vec<double, D> offset;       // from the host to its place on the surface, at the start [m]
+  Vec<double, D> normal;       // out of the body, of unit length
   double area = 0.0;           // of its share of the surface [m^2; in 2D m times 1 m]
   std::uint32_t number = 0;    // as it was given, while bonds are made
 };
@@ -34,8 +37,9 @@ struct GivenPoint {
 template <int D>
 struct ContactPoint {
   std::uint32_t host = 0;
-  Vec<double, D> offset;  // from the host, in the body at the start [m]
-  double area = 0.0;      // [m^2; in 2D m times 1 m]
+  PlaceAtHost<D> surface;  // its place on the surface
+  Vec<double, D> normal;   // out of the body at the start
+  double area = 0.0;       // [m^2; in 2D m times 1 m]
 };
 
 /// Whom a point touches: a body by its number, a face of the box by -1 - (2 axis + side).
@@ -69,7 +73,7 @@ struct SurfaceTouch {
   Vec<double, D> push;     // on the point, by the spring [N]
   Vec<double, D> rub;      // at the place of contact, by friction [N]
   Vec<double, D> arm;      // from the point to that place [m]
-  Vec<double, D> reach;    // from the host to that place, in the body at the start [m]
+  PlaceAtHost<D> reach;    // that place in the body at the start
   double rubbed = 0.0;     // taken by friction in the step [J]
   // The points of the other body that it feels, of SurfacePart::felt.
   std::uint32_t first_felt = 0, felt = 0;
@@ -194,7 +198,7 @@ struct Surfaces {
   double moved = 0.0;                           // by the farthest of them since [m]
   double closing = 0.0;      // by how fast points near each other have moved since, at most [m/s]
   double awake_until = 0.0;  // by so much, SurfacePart::awake serves [m]
-  std::vector<HostMotion<D>> motions;           // of hosts in touch
+  std::vector<HostInTouch<D>> in_touch;         // hosts
   std::vector<std::uint32_t> moving;            // the numbers of these
   std::vector<std::uint32_t> place_of_motion;   // of each host, 1 + where that is, or 0
   std::vector<ActingBetween<D>> between;        // bodies, by pair

@@ -100,8 +100,9 @@ class Sharing:
     near: Near | None = None
 
 
-Carried = tuple[list[int], Array, Array]
-"""Particles that carry points, the ways from them [m], and the areas [m^2; in 2D m]."""
+Carried = tuple[list[int], Array, Array, Array]
+"""Particles that carry points, the ways from them to the surface [m], its normals there, and the
+areas [m^2; in 2D m]."""
 
 
 def _of_body(
@@ -117,8 +118,8 @@ def _of_body(
             positions, near = np.concatenate(sharing.world.comm.allgather(positions)), None
         points = points_of_particles(positions, part.spacing, along, depth)
     numbers, positions = candidates(points.places, positions, part.spacing, near)
-    owners, offsets, areas = _carried(case, part, positions, points)
-    return numbers[owners].tolist(), offsets, areas
+    owners, *carried = _carried(case, part, positions, points, depth)
+    return numbers[owners].tolist(), *carried
 
 
 def _of_balls(
@@ -128,7 +129,7 @@ def _of_balls(
     particles: Particles,
     spacing: float,
     sharing: Sharing,
-) -> Iterable[tuple[int, list[int], Array, Array]]:
+) -> Iterable[tuple[int, list[int], Array, Array, Array]]:
     """Yield the number of each ball here, and what carries its points."""
     assert part.balls is not None
     ends = np.cumsum(particles.counts)
@@ -136,11 +137,16 @@ def _of_balls(
         along = spacing / ALONG[case.grid.dimension]
         centre, radius = (of_all[sharing.first + k] for of_all in part.balls)
         points = points_of_ball(centre, float(radius), along, 0.5 * spacing)
-        yield number + k, *_carried(case, part, particles.positions[begin:end], points)
+        yield (
+            number + k,
+            *_carried(case, part, particles.positions[begin:end], points, 0.5 * spacing),
+        )
 
 
-def _carried(case: Case, part: FilledPart, positions: Array, points: ContactPoints) -> Carried:
-    """Return the particles nearest to the points, the ways from them, and the areas."""
+def _carried(
+    case: Case, part: FilledPart, positions: Array, points: ContactPoints, depth: float
+) -> Carried:
+    """Return the particles nearest to the points, the ways to the surface, normals and areas."""
     which, owner = nearest_particles(positions, points.places, part.spacing)
     shared = np.bincount(which, minlength=len(points.places))
     if not shared.all():
@@ -148,9 +154,10 @@ def _carried(case: Case, part: FilledPart, positions: Array, points: ContactPoin
         rule = f"has no particles near {share:.0%} of its surface: it is too thin for its spacing"
         remedy = "give a smaller grid.cell_size or more particles_per_cell"
         raise case.error(case.part_path(part.name), rule, remedy)
-    offsets = points.places[which] - positions[owner]
+    normals = np.ascontiguousarray(points.normals[which])
+    offsets = points.places[which] + depth * normals - positions[owner]
     areas = points.areas[which] / shared[which]
-    return owner.tolist(), np.ascontiguousarray(offsets), areas
+    return owner.tolist(), np.ascontiguousarray(offsets), normals, areas
 
 
 def _held_planes(case: Case) -> list[tuple[int, float]]:

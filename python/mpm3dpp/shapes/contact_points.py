@@ -2,7 +2,7 @@
 """Contact points of a body: points of its drawn surface, evenly spread, a depth inside it.
 
 They lie on the shape and not on its filling: a ball filled by a lattice is round. Where two faces
-meet each of them has the point at the edge, of which one stays.
+meet each of them has a point at the edge, with half of its share.
 """
 
 from __future__ import annotations
@@ -30,10 +30,12 @@ class ContactPoints(NamedTuple):
 
     Attributes:
         places: [m], shape (n, D).
+        normals: unit vectors out of the body, shape (n, D).
         areas: of their shares of the surface [m^2; in 2D m times 1 m], shape (n,).
     """
 
     places: Array
+    normals: Array
     areas: Array
 
 
@@ -102,7 +104,7 @@ def points_of_particles(
 
 
 def _inside(drawn: Surface, spacing: float, depth: float) -> ContactPoints:
-    """Return points behind a surface, one where faces share it."""
+    """Return points behind a surface; faces that meet share what they have at one place."""
     from scipy.spatial import cKDTree
 
     areas = np.linalg.norm(drawn.areas, axis=1)
@@ -110,12 +112,9 @@ def _inside(drawn: Surface, spacing: float, depth: float) -> ContactPoints:
     places = drawn.points - depth * normals
     places = _behind_all_faces(places, drawn.points, normals, depth)
     pairs = cKDTree(places).query_pairs(_SAME_POINT * spacing, output_type="ndarray")
-    kept = np.ones(len(places), dtype=bool)
     apart = np.einsum("ij,ij->i", normals[pairs[:, 0]], normals[pairs[:, 1]]) < _ONE_FACE
-    for first, second in pairs[apart][np.lexsort(pairs[apart].T[::-1])].tolist():
-        if kept[first]:
-            kept[second] = False
-    return ContactPoints(places[kept], areas[kept])
+    at_one_place = 1 + np.bincount(pairs[apart].ravel(), minlength=len(places))
+    return ContactPoints(places, normals, areas / at_one_place)
 
 
 def _behind_all_faces(places: Array, drawn: Array, normals: Array, depth: float) -> Array:

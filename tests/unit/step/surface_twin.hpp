@@ -6,8 +6,8 @@
 #include <random>
 
 #include "check.hpp"
-#include "mpm/reference/rigid.hpp"
-#include "mpm/reference/surfaces.hpp"
+#include "mpm/reference/bonds.hpp"
+#include "mpm/reference/restitution.hpp"
 #include "mpm/run/bodies.hpp"
 #include "mpm/run/prepare.hpp"
 #include "mpm/run/surfaces.hpp"
@@ -53,11 +53,13 @@ class SurfaceTwin {
   reference::Step<D> step;
   std::list<reference::KeptNodes<D>> kept;
   reference::Surfaces<D> surfaces{step, e};
+  std::vector<reference::Bond<D>> bonds;
 
   explicit SurfaceTwin(const SurfacesGiven<D>& given)
       : simulation(std::make_unique<Simulation<D>>(settings_of(given))) {
     step.bodies.reserve(given.bodies.size());
     step.h = cell;
+    step.spline = given.basis == basis_id<QuadraticBSpline>;
     for (const BlocksGiven<D>& body : given.bodies) add(body);
     for (const auto& [a, b, law] : given.pairs) {
       set_pair_law(simulation->domain, a, b, law);
@@ -74,6 +76,7 @@ class SurfaceTwin {
     for (reference::Body<D>& body : step.bodies)
       if (!body.prescribed()) body.motion = reference::motion_of(body.particles);
     start_nodes(given.shaking);
+    bonds = reference::find_bonds(surfaces);
     surfaces.start();
     find_points();
   }
@@ -120,6 +123,14 @@ class SurfaceTwin {
     x[0] = c * x0 - s * x1;
     x[1] = s * x0 + c * x1;
     return cell * (block.centre + x);
+  }
+
+  /// Out of a face of it.
+  static Vec<double, D> normal_of(const TurnedBlock<D>& block, int axis, double side) {
+    const Vec<double, D> origin = Vec<double, D>::zero();
+    Vec<double, D> out = origin;
+    out[axis] = side;
+    return normalised(place_of(block, out) - place_of(block, origin));
   }
 
   void add(const BlocksGiven<D>& given) {
@@ -192,26 +203,30 @@ class SurfaceTwin {
   /// e / 2 under the faces of blocks, nearly evenly, each carried by the nearest particle.
   void add_points(int number, const BlocksGiven<D>& given, reference::SurfaceBody<D>& surface) {
     constexpr double spacing = (D == 2 ? 0.5 : 1.0) * e / cell;
-    ContactPointsGiven told{{}, {}, {}, e};
-    std::vector<double> offsets, areas;
+    ContactPointsGiven told{{}, {}, {}, {}, e};
+    std::vector<double> offsets, normals, areas;
     for (const TurnedBlock<D>& block : given.blocks)
       for (int axis = 0; axis < D; ++axis)
         for (const double side : {-0.5, 0.5}) {
           Vec<double, D> low = Vec<double, D>::zero() - 0.5 * block.size;
           low[axis] = side * (block.size[axis] - e / cell);
+          // What lies on the lower corner of the box is no surface: the body goes on behind.
+          if (std::abs(block.centre[axis] + side * block.size[axis]) < 1e-9) continue;
           for_each_in(low, block.size, spacing, axis, [&](Vec<double, D> at) {
             for (int a = 0; a < D; ++a) at[a] += 0.03 * spacing * any();
-            const Vec<double, D> x = place_of(block, at);
+            const Vec<double, D> x = place_of(block, at), N = normal_of(block, axis, side);
             const double area = std::pow(spacing * cell, D - 1) * (1.0 + 0.05 * any());
             const std::size_t host = nearest(surface.body(), x);
-            surface.points.push_back(surface.point_at(x, area, host));
-            const Vec<double, D> d = x - surface.body().particles[host].X;
+            surface.points.push_back(surface.point_at(x, N, 0.5 * e, area, host));
+            const Vec<double, D> d = x + 0.5 * e * N - surface.body().particles[host].X;
             told.particles.push_back(static_cast<std::uint32_t>(host));
             offsets.insert(offsets.end(), d.c, d.c + D);
+            normals.insert(normals.end(), N.c, N.c + D);
             areas.push_back(area);
           });
         }
     told.offsets = offsets;
+    told.normals = normals;
     told.areas = areas;
     add_surface(*simulation, number, told);
   }

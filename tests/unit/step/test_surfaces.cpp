@@ -133,6 +133,143 @@ void check_rigid(Report& report) {
   CHECK(motion.velocity[0] > 0.99 * before && norm(motion.spin) > 1.0, before, motion.velocity[0]);
 }
 
+/// Where bodies part what restitution leaves not is taken from their motions as wholes, along the
+/// surface too; from one that does not deform as well.
+template <int D>
+void check_restitution(Report& report, bool rigid) {
+  SurfacesGiven<D> given = rigid ? rigid_blocks<D>() : two_blocks<D>(basis_id<QuadraticBSpline>);
+  given.friction = given.wall_friction[2] = 0.8;
+  given.restitution = 0.4;
+  // Of .9 the dashpot takes by its own law, of .4 as much as a step may.
+  given.pairs = {{0, 1, {.friction = 0.8, .restitution = 0.9}}};
+  given.bodies[0].density = 200.0;  // its waves are fast, so that it parts soon
+  SurfaceTwin<D> twin(given);
+  SurfaceComparison<D> comparison(report, twin);
+  double taken = 0.0, largest = 0.0, kinetic = 0.0;
+  for (const auto& body : twin.surfaces.bodies)
+    for (const auto& p : body.body().particles) kinetic += 0.5 * p.m * dot(p.v, p.v);
+  for (int k = 0; k < 44; ++k) {
+    comparison.make_step(step_of_waves);
+    for (const auto& body : twin.surfaces.bodies) {
+      const RigidMotion motion = body.motion();
+      const double power = dot(body.force, motion.velocity) +
+                           dot(body.moment - cross(motion.centre, body.force), motion.spin);
+      if (body.deforms()) taken -= twin.step.dt * power;
+      if (body.deforms()) largest = std::max(largest, norm(body.force));
+    }
+  }
+  CHECK(taken > 0.01 * kinetic && largest > 0.0, taken, kinetic, largest);
+}
+
+/// Two lumps of one body that fly against each other: more than four cells apart in it they are as
+/// two bodies.
+template <int D>
+void check_folds(Report& report) {
+  SurfacesGiven<D> given = two_blocks<D>(basis_id<Gimp>);  // whose short waves are not damped
+  TurnedBlock<D> left = given.bodies[0].blocks[0], right = left;
+  for (int a = 0; a < D; ++a) left.size[a] = right.size[a] = 3.5;
+  left.centre[0] = 8.07;
+  right.centre[0] = left.centre[0] + left.size[0] + 4.3;
+  right.angle = 0.05;
+  left.centre[1] = 8.03;
+  right.centre[1] = 8.53;
+  left.velocity[0] = 10.0;
+  right.velocity[0] = -10.0;
+  left.velocity[1] = right.velocity[1] = 0.0;
+  given.bodies = {{{left, right}}};
+  given.friction = 0.3;
+  SurfaceTwin<D> twin(given);
+  SurfaceComparison<D> comparison(report, twin);
+  int folds = 0;
+  double stored = 0.0;
+  for (int k = 0; k < 75; ++k) {
+    comparison.make_step(1.5 * step_of_waves);
+    for (const auto& touch : twin.surfaces.touches) folds += touch.whom == 0;
+    stored = std::max(stored, twin.surfaces.bodies[0].stored_push);
+  }
+  CHECK(folds > 100 && stored > 0.0, folds, stored);
+}
+
+/// Two blocks that are bonded where they touch, and swing on it, and a rigid one bonded to both,
+/// that has come to touch more of them than it is bonded to.
+template <int D>
+SurfacesGiven<D> bonded_blocks() {
+  SurfacesGiven<D> given = two_blocks<D>(basis_id<QuadraticBSpline>);
+  given.walls[2] = Wall::free;
+  TurnedBlock<D> lower = given.bodies[0].blocks[0], upper = lower, beside = lower;
+  upper.centre[0] += 1.04;
+  upper.centre[1] += lower.size[1];
+  upper.velocity = Vec<double, D>::zero();
+  upper.velocity[0] = 3.0;
+  upper.velocity[1] = 1.0;
+  lower.velocity[1] = 0.0;
+  beside.centre[0] = upper.centre[0] + upper.size[0] + 0.22;
+  beside.centre[1] = upper.centre[1] - 0.1;
+  beside.velocity[0] = -8.0;
+  beside.angle = 0.1;
+  given.bodies = {
+      {{lower}}, {{upper}, 2e7, 0.2, 1500.0}, {{beside}, 1e7, 0.3, 2000.0, BodyKind::rigid}};
+  given.pairs = {{0, 1, {.friction = 0.2, .bonded = true}}, {1, 2, {.bonded = true}}};
+  return given;
+}
+
+template <int D>
+void check_bonds(Report& report) {
+  SurfaceTwin<D> twin(bonded_blocks<D>());
+  std::array<std::size_t, 2> count{};
+  for (const reference::Bond<D>& bond : twin.bonds) ++count[bond.a + bond.b > 1 ? 1 : 0];
+  CHECK(count[0] > 20 && count[1] > 4, count[0], count[1]);
+  CHECK(count[0] < twin.points[0].size() / 2, count[0]);
+  SurfaceComparison<D> comparison(report, twin);
+  double most = 0.0;
+  bool pushes = false;
+  for (int k = 0; k < 30; ++k) {
+    comparison.make_step(step_of_waves);
+    for (const auto& bond : twin.bonds)
+      most = std::max(most, norm(bond.d.x - twin.surfaces.bodies[bond.a].points[bond.c].x));
+    pushes = pushes || !twin.surfaces.touches.empty();
+  }
+  CHECK(most > 0.01 * twin.e && pushes, most, pushes);
+}
+
+/// Two blocks that stand on one plane of symmetry or fixed wall, in 3D on two, hit each other:
+/// their points feel mirrored ones, in the edge between the walls those of three images.
+template <int D>
+void check_images(Report& report, Wall wall) {
+  SurfacesGiven<D> given = two_blocks<D>(basis_id<QuadraticBSpline>);
+  given.walls = {};
+  given.walls[0] = wall;
+  if (D == 3) given.walls[4] = Wall::slip;
+  given.gravity = 0.0;
+  given.friction = 0.3;
+  TurnedBlock<D>&lower = given.bodies[0].blocks[0], &upper = given.bodies[1].blocks[0];
+  upper.angle = 0.0;
+  lower.centre[1] = 6.03;
+  upper.centre[1] = lower.centre[1] + lower.size[1] + 0.01;
+  for (int a = 0; a < D; a += 2) {
+    lower.centre[a] = 0.5 * lower.size[a];
+    upper.centre[a] = 0.5 * upper.size[a];
+  }
+  upper.velocity[0] = 0.0;
+  upper.velocity[1] = -9.0;
+  SurfaceTwin<D> twin(given);
+  SurfaceComparison<D> comparison(report, twin);
+  std::array<int, D> images{};
+  double across = 0.0;
+  for (int k = 0; k < 24; ++k) {
+    comparison.make_step(step_of_waves);
+    for (const auto& touch : twin.surfaces.touches)
+      for (const auto& felt : touch.felt) {
+        std::size_t mirrors = 0;
+        for (int a = 0; a < D; ++a) mirrors += felt.mirror.sign[a] < 0.0;
+        if (felt.share > 1e-3) ++images[mirrors];
+        if (mirrors > 0) across = std::max(across, felt.share * norm(touch.rub));
+      }
+  }
+  for (const int n : images) CHECK(n > 20, n);
+  CHECK(across > 0.0);
+}
+
 }  // namespace
 
 void test_surfaces(Report& report) {
@@ -144,4 +281,16 @@ void test_surfaces(Report& report) {
   }
   check_rigid<2>(report);
   check_rigid<3>(report);
+  check_folds<2>(report);
+  check_folds<3>(report);
+  check_bonds<2>(report);
+  check_bonds<3>(report);
+  for (const Wall wall : {Wall::slip, Wall::fixed}) {
+    check_images<2>(report, wall);
+    check_images<3>(report, wall);
+  }
+  for (const bool rigid : {false, true}) {
+    check_restitution<2>(report, rigid);
+    check_restitution<3>(report, rigid);
+  }
 }
