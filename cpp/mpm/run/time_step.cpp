@@ -18,7 +18,7 @@ constexpr double most_closing = 0.5;
 
 // At most, of the time in which the fastest wave passes a cell, as springs between surfaces bear
 // it: with H of (S1) blocks whose faces lie anywhere between nodes keep their energy in hits at .6,
-// and at .7 some make as much again.
+// and at .7 some make up to .6 of it again.
 constexpr double most_cfl_of_springs = 0.6;
 
 /// How fast a particle passes the nodes [m/s]; 0 where they move with it.
