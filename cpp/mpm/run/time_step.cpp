@@ -115,9 +115,10 @@ std::string choose_time_step(Simulation<D>& simulation) {
     std::ostringstream text;
     text << "run.time_step = " << *run.time_step
          << " s is larger than the largest stable step, in which "
-         << "the fastest wave or particle passes " << (surfaces.exist() ? "0.6 of " : "")
-         << "a cell, " << stable << " s"
-         << (surfaces.exist() ? ": contact between surfaces bears no more" : "");
+         << "the fastest wave or particle passes ";
+    if (surfaces.exist()) text << most << " of ";
+    text << "a cell, " << stable << " s";
+    if (surfaces.exist()) text << ": contact between surfaces bears no more";
     return text.str();
   }
   simulation.next_time_step = stable_time_step(simulation.domain, cfl);

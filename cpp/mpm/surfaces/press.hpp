@@ -24,7 +24,7 @@ bool rubs(const SurfaceTouch<D>& touch) {
   return dot(touch.rub, touch.rub) > 0.0;
 }
 
-/// How all hosts in touch move, for friction.
+/// How all hosts in touch move, for friction, and are deformed.
 template <int D>
 void find_motions(Domain<D>& domain);
 
