@@ -94,8 +94,9 @@ constexpr int side_of(Whom face) { return (-1 - face) % 2; }
 template <int D>
 struct Felt {
   std::size_t q;
-  Mirror<D> mirror;  // of p
-  double share;      // a_q w_q / S
+  Mirror<D> mirror;       // of p
+  double share;           // a_q w_q / S
+  Vec<double, D> push{};  // on q [N]
 };
 
 /// A point p of a body and whom it overlaps.
@@ -104,11 +105,11 @@ struct SurfaceTouch {
   std::size_t body, point;
   Whom whom;
   std::vector<Felt<D>> felt{};
-  double z = 0.0, b = 0.0;       // height over its points or over the face, set back by [m]
-  double k = 0.0;                // (S1) [N/m]
-  Vec<double, D> push{}, rub{};  // on p, at it and at the place of contact [N]
-  Vec<double, D> place{};        // of contact [m]
-  bool slides = false;           // friction is at its limit
+  double z = 0.0, b = 0.0;            // height over its points or over the face, set back by [m]
+  double k = 0.0;                     // (S1) [N/m]
+  Vec<double, D> push{}, rub{};       // on p, at it and at the place of contact [N]
+  Vec<double, D> place{};             // of contact [m]
+  bool rubs = false, slides = false;  // has friction; at its limit
 };
 
 /// Friction and restitution of two bodies, and whether they are bonded.

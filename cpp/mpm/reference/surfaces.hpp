@@ -79,6 +79,7 @@ struct Surfaces {
     for (SurfaceTouch<D>& t : touches) {
       press(t);
       rub(t, kept);
+      give(t);
     }
     slips = std::move(kept);  // Who parts forgets.
   }
@@ -193,11 +194,34 @@ struct Surfaces {
       return force;
     };
     t.push = force_at(p);
-    bodies[t.body].push(point(t), t.push);
+    for (std::size_t j = 0; j < q.size(); ++j) t.felt[j].push = force_at(q[j]);
     bodies[t.body].stored_push += std::real(energy(t, p, q));
-    for (std::size_t j = 0; j < q.size(); ++j) {
-      const ContactPoint<D>& c = other(t).points[t.felt[j].q];
-      other(t).push(c, force_at(q[j]));
+  }
+
+  /// The dashpot (S6) of a point that slides with u [m/s]: all that presses by so much more.
+  void damp(SurfaceTouch<D>& t, const Vec<double, D>& u) {
+    const auto admittance = [](const SurfaceBody<D>& b) {
+      return std::sqrt(b.compliance() / b.body().material.density);
+    };
+    const double A = point(t).A, of_a = admittance(bodies[t.body]), tiny = 1e-30 * e;
+    const double eta = is_face(t.whom) ? 0.4 * A / of_a : 0.2 * A / (of_a + admittance(other(t)));
+    // k o, as it begins, and do/dt.
+    const double spring = t.k * std::imag(stored(std::complex<double>(overlap(t), tiny))) / tiny;
+    const double faster = -dot(t.push, u) / spring;
+    const double more = std::max(1.0 + eta * faster / spring, 0.0);
+    t.push = more * t.push;
+    for (Felt<D>& felt : t.felt) felt.push = more * felt.push;
+  }
+
+  void give(SurfaceTouch<D>& t) {
+    SurfaceBody<D>& own = bodies[t.body];
+    own.push(point(t), t.push);
+    if (t.rubs) own.rub(point(t), t.place, t.rub);
+    for (const Felt<D>& felt : t.felt) {
+      const ContactPoint<D>& c = other(t).points[felt.q];
+      other(t).push(c, felt.push);
+      if (t.rubs)
+        other(t).rub(c, felt.mirror.place(t.place), felt.mirror.vector(-felt.share * t.rub));
     }
   }
 
@@ -223,14 +247,14 @@ struct Surfaces {
       s = norm(before->second) * normalised(along(before->second, n));
     s += step.dt * along(u, n);
     t.slides = norm(s) > mu * f / k_t;
-    if (t.slides) s = (mu * f / k_t) * normalised(s);
+    if (t.slides) {
+      damp(t, u);
+      s = std::min(norm(s), mu * norm(t.push) / k_t) * normalised(s);
+    }
     kept[{t.body, t.point, t.whom}] = s;
+    t.rubs = true;
     t.rub = -k_t * s;
     bodies[t.body].stored_rub += 0.5 * k_t * dot(s, s);
-    bodies[t.body].rub(point(t), t.place, t.rub);
-    for (const Felt<D>& felt : t.felt)
-      other(t).rub(other(t).points[felt.q], felt.mirror.place(t.place),
-                   felt.mirror.vector(-felt.share * t.rub));
   }
 };
 

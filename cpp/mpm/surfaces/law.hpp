@@ -16,6 +16,11 @@
 // turns with the normal and grows by what the surfaces slip on one another, up to where it slides,
 //   s += u_t dt,   |s| <= mu f / k_t,   t = - k_t s,                                        (S2)
 // k_t = 0.8 k being that of Mindlin (1949), 2 (1 - nu) / (2 - nu), for nu about 1/3.
+//
+// Elastic bodies without any loss that slide flutter: constant friction drives waves along their
+// surfaces (Adams 1995). So a point that slides has a dashpot along the normal besides, a part of
+// what would let no wave back, Z = rho c of the start (after Oden & Martins 1985):
+//   f = k o + eta do/dt,   eta = 0.2 A / (1 / Z_a + 1 / Z_b),   0.4 A Z at a face.          (S6)
 #include <algorithm>
 #include <cmath>
 
@@ -26,6 +31,7 @@ namespace mpm {
 inline constexpr double layer = 0.25;       // H over the cells' size
 inline constexpr double most_onset = 0.05;  // w over the cells' size
 inline constexpr double tangential = 0.8;   // k_t / k
+inline constexpr double of_waves = 0.2;     // eta over A Z of both
 
 /// Of a point of that area against another body, (S1) [N/m]; 1 / M of a rigid body is 0.
 inline double stiffness_of_point(double area, double cell_size, double compliance,
@@ -35,6 +41,15 @@ inline double stiffness_of_point(double area, double cell_size, double complianc
 /// Against a face of the box.
 inline double stiffness_at_face(double area, double cell_size, double compliance) {
   return area / (layer * cell_size * compliance);
+}
+
+/// Of a point that slides, (S6) [N s/m]; 1 / Z of a rigid body is 0.
+inline double damping_of_point(double area, double admittance, double admittance_of_other) {
+  return of_waves * area / (admittance + admittance_of_other);
+}
+/// On a face of the box.
+inline double damping_at_face(double area, double admittance) {
+  return 2.0 * of_waves * area / admittance;
 }
 
 /// The force of a spring over k, (S4).
@@ -57,6 +72,7 @@ struct Friction {
   Vec<double, D> slip;   // of the spring [m]
   Vec<double, D> force;  // [N]
   double stored, taken;  // in the spring, by sliding in the step [J]
+  bool slides;
 };
 
 /// That of a point with the spring's slip so far, the unit normal, and by how much the surfaces
@@ -77,7 +93,7 @@ Friction<D> rub(const Vec<double, D>& before, const Vec<double, D>& normal,
     taken = 0.5 * k * (now - most) * (most + dot(old, slip) / now);
     slip = (most / now) * slip;
   }
-  return {slip, (-k) * slip, 0.5 * k * dot(slip, slip), taken};
+  return {slip, (-k) * slip, 0.5 * k * dot(slip, slip), taken, now > most};
 }
 
 }  // namespace mpm

@@ -55,6 +55,42 @@ Vec<double, D> slip_velocity(const Domain<D>& domain, const SurfacePart<D>& part
   return u;
 }
 
+/// What waves meet in a body, 1 / (rho c) of the start [m^2 s/kg].
+template <int D>
+double admittance_of(const Domain<D>& domain, int body) {
+  const Body<D>& of = domain.body_at(body);
+  return 1.0 / std::sqrt(of.stiffness * of.initial_density);
+}
+/// (S6)
+template <int D>
+double damping_of(const Domain<D>& domain, const SurfacePart<D>& part,
+                  const SurfaceTouch<D>& touch) {
+  const double area = domain.surfaces.points[touch.point].area,
+               own = admittance_of(domain, part.body);
+  return is_face(touch.opposite)
+             ? damping_at_face(area, own)
+             : damping_of_point(area, own, admittance_of(domain, touch.opposite));
+}
+
+/// The force of friction of a touch, and of the dashpot along the normal if it slides.
+template <int D>
+Friction<D> slide(const Domain<D>& domain, const SurfacePart<D>& part, SurfaceTouch<D>& touch,
+                  double coefficient) {
+  const double push = norm(touch.push);
+  const Vec<double, D> normal = (1.0 / push) * touch.push, u = slip_velocity(domain, part, touch),
+                       way = domain.time_step * u,
+                       before = slip_of(part, touch.point, touch.opposite);
+  const auto pushed_with = [&](double force) {
+    return rub(before, normal, way, touch.stiffness, coefficient, force);
+  };
+  const Friction<D> friction = pushed_with(push);
+  if (!friction.slides) return friction;
+  const double damping = damping_of(domain, part, touch);
+  touch.pushed = std::max(touch.pushed - damping / touch.stiffness * dot(touch.slope, u), 0.0);
+  touch.push = touch.stiffness * touch.pushed * touch.slope;
+  return pushed_with(norm(touch.push));
+}
+
 /// What passes to a point from the image of another is given by the walls.
 template <int D>
 void add_across_walls(const Domain<D>& domain, const SurfaceTouch<D>& touch,
@@ -119,11 +155,9 @@ void press_part(Domain<D>& domain, SurfacePart<D>& part) {
     touch.pushed = pushed_by(touch.overlap, surfaces.onset);
     touch.push = touch.stiffness * touch.pushed * touch.slope;
     part.stored_push += touch.stiffness * stored_by(touch.overlap, surfaces.onset);
-    const double mu = friction_with(domain, part.body, touch.opposite), push = norm(touch.push);
-    if (mu > 0.0 && push > 0.0) {
-      const Vec<double, D> way = domain.time_step * slip_velocity(domain, part, touch);
-      const Friction<D> friction = rub(slip_of(part, touch.point, touch.opposite),
-                                       (1.0 / push) * touch.push, way, touch.stiffness, mu, push);
+    const double mu = friction_with(domain, part.body, touch.opposite);
+    if (mu > 0.0 && norm(touch.push) > 0.0) {
+      const Friction<D> friction = slide(domain, part, touch, mu);
       touch.rub = friction.force;
       touch.rubbed = friction.taken;
       part.stored_rub += friction.stored;

@@ -151,7 +151,10 @@ class SurfaceComparison {
       places.add(fast.places[k], expected.bodies[b].points[c].x);
     });
     CHECK_CLOSE(places.most, 0.0, tolerance * fast.spacing);
-    CHECK_EQUAL(fast.touching, expected.touches.size());
+    // A point that slides and parts may not push for a while.
+    const auto pushes = [](const auto& touch) { return norm(touch.push) > 0.0; };
+    CHECK_EQUAL(fast.touching,
+                static_cast<std::size_t>(std::ranges::count_if(expected.touches, pushes)));
     double push = 0.0, rub = 0.0;
     for (const reference::SurfaceBody<D>& body : expected.bodies) {
       push += body.stored_push;
