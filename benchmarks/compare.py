@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any
 
 STEPS, WARM_UP = "2", "5"
-NUMERICS = ("basis", "transfer", "preset")
+NUMERICS = ("basis", "transfer", "preset", "frame")
 
 
 class Build:

@@ -18,7 +18,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-NUMERICS = ("basis", "transfer", "scheme", "preset")
+NUMERICS = ("basis", "transfer", "scheme", "preset", "frame")
 HISTORY = Path(__file__).with_name("history.csv")
 
 
@@ -51,6 +51,8 @@ def row(result: dict[str, Any], commit_name: str, note: str) -> dict[str, Any]:
     """Return a result as a row of the history."""
     if result["preset"]:
         note = f"preset {result['preset']}; {note}".rstrip("; ")
+    if result["frame"] != "updated":
+        note = f"{result['frame']} frame; {note}".rstrip("; ")
     if "contact_ratio" in result:
         note = f"{result['contact_ratio']:.3f} of no contact; {note}".rstrip("; ")
     return {

@@ -63,13 +63,11 @@ def test_figures_agree_with_one_another(cubes):
 
 
 def test_grains_are_balls_of_552_particles_that_touch():
-    spacing = cases.CELL / cases.PER_AXIS
-    ball, places = spheres.ball(spacing), spheres.centres(1000, spacing)
-    assert ball.shape == (spheres.PARTICLES, 3)
     assert cases.BENCHES["spheres"].particles(1000) == 552_000
-    assert np.ptp(places, axis=0) == pytest.approx([9 * 5 * cases.CELL] * 3)
-    assert len(np.unique(spheres.centres(100, spacing), axis=0)) == 100
+    assert np.ptp(spheres.centres(1000), axis=0) == pytest.approx([9 * 5 * cases.CELL] * 3)
+    assert len(np.unique(spheres.centres(100), axis=0)) == 100
     simulation = cases.make(cases.BENCHES["spheres"], size=8)
+    assert simulation.particle_count == 8 * spheres.PARTICLES
     simulation.advance(20, 1.0)
     pairs = {pair.bodies for pair in simulation.contact_pairs()}
     assert len(pairs) == 12  # The edges of a cube: neighbours touch, no others.
@@ -180,7 +178,7 @@ def test_blocks_hold_all_steps():
     ],
     ids=lambda numerics: "_".join(numerics.words()),
 )
-@pytest.mark.parametrize("name", [name for name, each in cases.BENCHES.items() if not each.whole])
+@pytest.mark.parametrize("name", [name for name, each in cases.BENCHES.items() if each.flies])
 def test_every_benchmark_strains_and_crosses_cells(name, numerics):
     chosen = cases.BENCHES[name]
     if chosen.loose and numerics.scheme == "usl":
@@ -240,7 +238,7 @@ def test_debris_is_sparse_and_fast():
 
 
 def test_lattice_fills_the_cells_evenly():
-    places = cases.positions(3, 3, body=1) / cases.CELL
+    places = cases.make(cases.BENCHES["two_cubes"], size=3).column(1, "position") / cases.CELL
     cells, counts = np.unique(np.floor(places).astype(int), axis=0, return_counts=True)
     assert len(cells) == 27
     assert set(counts) == {8}
@@ -248,10 +246,9 @@ def test_lattice_fills_the_cells_evenly():
 
 
 def test_breathing_has_no_momentum():
-    speed = 100.0
-    speeds = cases.velocities(3, 3, speed)
-    rounding = np.finfo(float).eps * speed * len(speeds)
-    assert abs(np.linalg.norm(speeds.mean(axis=0)) - speed) < rounding
+    speeds = cases.make(cases.BENCHES["elastic3d"], size=3).column(0, "velocity")
+    rounding = np.finfo(float).eps * cases.SPEED * len(speeds)
+    assert abs(np.linalg.norm(speeds.mean(axis=0)) - cases.SPEED) < rounding
     assert np.ptp(speeds, axis=0).min() > cases.BREATHING
 
 

@@ -247,7 +247,7 @@ def test_a_benchmark_shows_what_a_device_does(
             if not order:
                 return {"ready": True}
             memory = dict(self._simulation.bytes())
-            end = {"growth": 0, "bytes": memory, "overlapped_nodes": 0, "isa": "none"}
+            end = {"growth": 0, "bytes": memory, "isa": "none", **dict.fromkeys(worker.TOUCHING, 0)}
             end["particles"] = self._simulation.particle_count
             return end | worker.measure_device(self._simulation, 2)
 
@@ -262,5 +262,5 @@ def test_a_benchmark_shows_what_a_device_does(
     report.show(result)
     report.show_series([result, result])
     shown = capsys.readouterr().out
-    assert "AFLIP, USF; Card 1, 5 steps" in shown and "everything" in shown
+    assert "AFLIP, USF, updated frame; Card 1, 5 steps" in shown and "everything" in shown
     assert "of 3000.0 GB/s" in shown and "the limit is nominal" in shown

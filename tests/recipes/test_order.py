@@ -11,8 +11,7 @@ import pytest
 
 from cases import each_numerics, everything
 from mpm3dpp import Simulation
-from mpm3dpp.bench import Numerics
-from mpm3dpp.bench import cases as bench
+from mpm3dpp.bench import BENCHES, Numerics
 from mpm3dpp.io.result_hash import result_hash
 
 DISORDERS = {"never sorted": math.inf, "sorted when it pays": None, "sorted every step": 0.0}
@@ -40,21 +39,11 @@ def test_everything(tmp_path: Path, dimension: int, scheme: str, basis: str) -> 
     ("name", "size"), [("spheres", 12), ("elastic3d", 6), ("jc", 6), ("debris", 6)]
 )
 @pytest.mark.parametrize("basis", [None, "gimp"])
-def test_benchmarks(
-    name: str, size: int, basis: str | None, scheme: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_benchmarks(name: str, size: int, basis: str | None, scheme: str) -> None:
     """Contact of many bodies, cells that all particles cross, a plastic law with a search."""
-    plain = bench.core_settings
-    numerics = Numerics(basis=basis, scheme=scheme)
-    digests = {}
-    for disorder, share in DISORDERS.items():
-
-        def settings(*words: Any, share: float | None = share) -> Any:
-            made = plain(*words)
-            if share is not None:
-                made.execution.disorder = share
-            return made
-
-        monkeypatch.setattr(bench, "core_settings", settings)
-        digests[disorder] = digest(bench.make(bench.BENCHES[name], size, numerics=numerics), 80)
+    case = BENCHES[name].case(size, Numerics(basis=basis, scheme=scheme))
+    digests = {
+        disorder: digest(Simulation(case, threads=1, disorder=share).core, 80)
+        for disorder, share in DISORDERS.items()
+    }
     assert len(set(digests.values())) == 1, digests

@@ -13,6 +13,7 @@ benchmark with a twin (`two_cubes`) takes turns with it, block by block, for an 
 - Bandwidth and arithmetic: measured by the same process after its memory has been read. How the
   traffic and the operations of a step are counted: see `traffic.py` and `operations.py`.
 - Numerics are those of a case that says nothing of them, but where a word is given: `numerics.py`.
+  All bodies that deform have the same frame.
 - With a device both limits are nominal, of its clocks, and the traffic is the same count: what
   the stages of the step must move, whatever its kernels do.
 """
@@ -27,6 +28,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm3dpp.base.errors import CaseError, nearest
+from mpm3dpp.base.frames import MATERIAL
 from mpm3dpp.base.machine import MEMORY, PARTICLE_BYTES_WITH_GRID
 from mpm3dpp.case.case import Case
 from mpm3dpp.io.folders import writable_folder
@@ -84,13 +86,13 @@ def measure(
         What `--json` prints: `particles`, `threads`, `ns_per_particle_step`, `stages` [ns per
         particle-step], `bytes_per_particle` {particles, grid, contact, other, total},
         `bandwidth_GBps`, `bandwidth_fraction`, `arithmetic_GFLOPS`, `arithmetic_fraction`; what
-        was measured (`bench`, `basis`, `transfer`, `scheme`, `preset`, `size`, `steps`, `version`,
-        `machine`, `isa`); `ranks` and what passes between them, see `Manifest.ranks`; `blocks`,
-        all blocks [ns]; `device`, its name or "cpu", and with one `device_bytes_per_particle`,
-        `stages` being its kernels, of steps of their own; and with a twin `without_contact_ns` and
-        `contact_ratio` (`elastic3d_ns`, `elastic3d_ratio` for `jc` and `debris`), the median over
-        pairs of blocks. What is counted of traffic and operations is None for a transfer that is
-        not counted.
+        was measured (`bench`, `basis`, `transfer`, `scheme`, `preset`, `frame`, `size`, `steps`,
+        `version`, `machine`, `isa`); `ranks` and what passes between them, see `Manifest.ranks`;
+        `blocks`, all blocks [ns]; `device`, its name or "cpu", and with one
+        `device_bytes_per_particle`, `stages` being its kernels, of steps of their own; and with a
+        twin `without_contact_ns` and `contact_ratio` (`elastic3d_ns`, `elastic3d_ratio` for `jc`
+        and `debris`), the median over pairs of blocks. What is counted of traffic and operations is
+        None for a transfer that is not counted, and in the material frame.
 
     Raises:
         CaseError: there is no such benchmark, not with these numerics, or no memory for this size.
@@ -147,6 +149,10 @@ def _allowed(bench: Bench, size: int, numerics: Numerics, device: str, ranks: in
         raise CaseError("must be cpu or cuda", nearest(device, (CPU, CUDA)), key="device")
     if device == CUDA and ranks > 1:
         raise CaseError(f"{ONE_PROCESS}: leave --ranks out")
+    if numerics.frame == MATERIAL and (device == CUDA or bench.loose):
+        loose = f"{bench.name}, whose particles are no neighbours of each other"
+        rule = f"does not go with {loose if bench.loose else '--device cuda yet'}"
+        raise CaseError(rule, "leave it out", key="frame", value=MATERIAL)
     case = bench.case(size, numerics)
     if bench.loose and case.run.scheme == "usl":
         raise CaseError(
@@ -159,7 +165,7 @@ def _allowed(bench: Bench, size: int, numerics: Numerics, device: str, ranks: in
 
 def _check_memory(specs: Sequence[Part]) -> None:
     """Raise `CaseError` if benchmarks at once have no room in memory."""
-    particles = sum(BENCHES[part.name].particles(part.size) for part in specs)
+    particles = sum(BENCHES[part.name].particles(part.size, part.numerics.frame) for part in specs)
     needed = particles * PARTICLE_BYTES_WITH_GRID
     if needed > MEMORY:
         name, size = max(specs, key=lambda part: part.size)[:2]

@@ -1,33 +1,30 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The benchmarks: particles that strain and cross cells. SI units.
 
-Each has a case, which says nothing of numerics: these are what a user's case has. Only `drum` takes
-its bodies from there; of the others they are lattices that are made here.
+Each is a case, which says nothing of numerics: these are what a user's case has.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mpm3dpp import _core
+from mpm3dpp.base.frames import UPDATED, particles_along
 from mpm3dpp.case.case import Case
 from mpm3dpp.ranks.world import World
-from mpm3dpp.run.core_settings import core_settings
 from mpm3dpp.run.simulation import Simulation
 
 from . import debris, drum, spheres
-from .numerics import DEFAULT, Numerics, case_of
+from .numerics import CELL, DEFAULT, PER_AXIS, Numerics, case_of
 
 Array = NDArray[np.float64]
+Tables = dict[str, Any]
 
-CELL = 1e-3  # [m]
-PER_AXIS = 2  # Particles per cell along each axis.
 # Tables of a case.
 ALUMINIUM: dict[str, Any] = {
     "density": 2700.0,
@@ -50,7 +47,7 @@ DIRECTION = (3.0, 2.0, 1.0)  # Of the translation: oblique to the grid.
 # Speed of the translation [m/s]. With USL and the linear basis a particle that enters an empty cell
 # moves a node of almost no mass, and the run is unstable within thirty steps. So with USL the
 # bodies stay in place, and the figure holds no particles that cross cells.
-SPEED = {"usf": 190.0, "musl": 190.0, "usl": 0.0}
+SPEED = 190.0
 BREATHING = 5.0  # Amplitude of the breathing mode along each axis [m/s].
 YIELDING = 100.0  # The same where most particles shall yield; it turns from axis to axis.
 # Speed of each cube towards the other [m/s]. Elastic cubes part when the wave has crossed them and
@@ -59,6 +56,28 @@ YIELDING = 100.0  # The same where most particles shall yield; it turns from axi
 APPROACH = 2.0
 FRICTION = 0.2
 FOREVER = 1e9  # End time that no benchmark reaches [s].
+
+
+def cubes(bench: Bench, size: int, translation: Array) -> Tables:
+    """Return cubes (squares) side by side along x that fly, breathe, and approach each other.
+
+    Breathing is v_a = A sin(pi (x_a - centre_a) / edge): smooth, of no momentum, and it strains
+    every particle differently. Where particles shall yield it is inwards along x and outwards along
+    the other axes.
+    """
+    edge, axes = size * CELL, "xyz"[: bench.dimension]
+    amplitudes = YIELDING * np.array([-2.0, 1.0, 1.0]) if bench.state else np.full(3, BREATHING)
+    bodies = {}
+    for k in range(bench.bodies):
+        lower, mean = edge * k * np.eye(bench.dimension)[0], translation.copy()
+        mean[0] += APPROACH * (1 - 2 * k) if bench.bodies > 1 else 0.0
+        velocity = [
+            {"expression": f"{v:.17g} + {a} * sin(pi * ({x} - {middle:.17g}) / {edge:.17g})"}
+            for v, a, x, middle in zip(mean, amplitudes, axes, lower + 0.5 * edge, strict=False)
+        ]
+        box = {"lower": lower.tolist(), "upper": (lower + edge).tolist()}
+        bodies[f"body_{k}"] = {"material": "its", "shape": {"box": box}, "velocity": velocity}
+    return {"body": bodies}
 
 
 @dataclass(frozen=True)
@@ -71,14 +90,17 @@ class Bench:
         dimension: 2 or 3.
         size: cells along the edge of a body, if the user gives none; of grains, how many.
         bodies: how many cubes (squares), side by side along x; 0 for grains.
+        grain: particles of a grain in the updated frame, about.
         loose: whether the particles of the body lie apart at random (`debris`), as many as a cube
             of the given size has.
+        flies: whether the bodies fly through the grid.
         contact: whether the bodies feel each other.
         twin: name of the benchmark that is measured in turn with this one, for their ratio.
         material: its table in a case.
         state: numbers that the material keeps for a particle besides its stress.
         law: name of the material in `operations.LAWS`.
-        whole: gives the tables of the case of a size, if the bodies are those of a case.
+        tables: gives the tables of bodies that are no cubes, of a size and the velocity at which
+            they fly [m/s], and of what else the case has of its own.
     """
 
     name: str
@@ -86,20 +108,21 @@ class Bench:
     dimension: int
     size: int
     bodies: int = 1
+    grain: int = 0
     contact: bool = False
     twin: str = ""
-    material: dict[str, Any] = field(default_factory=lambda: ALUMINIUM)
+    material: Tables = field(default_factory=lambda: ALUMINIUM)
     state: int = 0
     law: str = "elastic"
     loose: bool = False
-    whole: Callable[[int], dict[str, Any]] | None = None
+    flies: bool = True
+    tables: Callable[[int, Array], Tables] | None = None
 
-    def particles(self, size: int) -> int:
-        """Return the number of particles of all bodies; of a whole case about how many."""
-        if self.whole is not None:
-            return drum.PARTICLES * size
+    def particles(self, size: int, frame: str | None = None) -> int:
+        """Return the number of particles of all bodies; of grains about how many."""
         if self.bodies == 0:
-            return spheres.PARTICLES * size
+            finer = particles_along(frame or UPDATED, cells_a_radius=1.0) / PER_AXIS
+            return round(self.grain * finer**self.dimension) * size
         return int(self.bodies * (PER_AXIS * size) ** self.dimension)
 
     def body_count(self, size: int) -> int:
@@ -107,15 +130,12 @@ class Bench:
         return self.bodies or size
 
     def case(self, size: int, numerics: Numerics) -> Case:
-        """Return the case that says what the numerics are; see `numerics.case_of` for errors."""
-        cell = {"box": {"lower": [0.0] * self.dimension, "upper": [CELL] * self.dimension}}
-        tables: dict[str, Any] = {
-            "run": {},
-            "material": {"its": self.material},
-            "body": {"its": {"material": "its", "shape": cell}},
-        }
-        if self.whole is not None:
-            tables = self.whole(size)
+        """Return the case of a size; see `numerics.case_of` for errors."""
+        direction = np.array(DIRECTION[: self.dimension])
+        speed = 0.0 if numerics.scheme == "usl" else SPEED
+        translation = speed * direction / np.linalg.norm(direction)
+        tables: Tables = {"run": {}, "material": {"its": self.material}}
+        tables |= (self.tables or partial(cubes, self))(size, translation)
         tables["grid"] = {"dimension": self.dimension, "cell_size": CELL}
         tables["run"] |= {"end_time": FOREVER, "outside_limit": 1.0, "volume_limit": 1.0}
         tables["contact"] = {"enabled": self.contact, "friction": FRICTION}
@@ -145,6 +165,7 @@ BENCHES = {
             twin="elastic3d",
             material=SOFT,
             loose=True,
+            tables=debris.tables,
         ),
         Bench(
             "two_cubes",
@@ -162,66 +183,33 @@ BENCHES = {
             3,
             1000,
             bodies=0,
+            grain=spheres.PARTICLES,
             contact=True,
             twin="spheres_apart",
+            tables=spheres.tables,
         ),
-        Bench("spheres_apart", "the same balls without contact", 3, 1000, bodies=0),
+        Bench(
+            "spheres_apart",
+            "the same balls without contact",
+            3,
+            1000,
+            bodies=0,
+            grain=spheres.PARTICLES,
+            tables=spheres.tables,
+        ),
         Bench(
             "drum",
             "touching discs of 5.5 cells across in a drum that turns, contact with friction",
             2,
             1000,
             bodies=0,
+            grain=drum.PARTICLES,
             contact=True,
-            whole=drum.tables,
+            flies=False,
+            tables=lambda count, _: drum.tables(count),
         ),
     )
 }
-
-
-def positions(dimension: int, size: int, body: int) -> Array:
-    """Return the lattice of a body, shape (n, D) [m]; body k stands k edges along x.
-
-    The array is filled in its final shape, so that making it takes no second one.
-    """
-    edge = PER_AXIS * size
-    lattice = np.empty((edge,) * dimension + (dimension,))
-    places = (np.arange(edge) + 0.5) * (CELL / PER_AXIS)
-    for axis in range(dimension):
-        shift = body * size * CELL if axis == 0 else 0.0
-        lattice[..., axis] = _along(places + shift, axis, dimension)
-    return lattice.reshape(-1, dimension)
-
-
-def velocities(
-    dimension: int, size: int, speed: float, approach: float = 0.0, yielding: bool = False
-) -> Array:
-    """Return translation + breathing + approach along x, shape (n, D) [m/s].
-
-    Breathing is v_a = A sin(pi (x_a - centre_a) / edge): smooth, of no momentum, and it strains
-    every particle differently. Where particles shall yield it is inwards along x and outwards along
-    the other axes.
-    """
-    edge = PER_AXIS * size
-    field = np.empty((edge,) * dimension + (dimension,))
-    mode = BREATHING * np.sin(math.pi * ((np.arange(edge) + 0.5) / edge - 0.5))
-    mean = _translation(dimension, speed)
-    mean[0] += approach
-    for axis in range(dimension):
-        sign = (-2.0 if axis == 0 else 1.0) * YIELDING / BREATHING if yielding else 1.0
-        field[..., axis] = _along(sign * mode + mean[axis], axis, dimension)
-    return field.reshape(-1, dimension)
-
-
-def _translation(dimension: int, speed: float) -> Array:
-    """Return the velocity of the translation [m/s], shape (D,)."""
-    direction = np.array(DIRECTION[:dimension])
-    return np.asarray(speed * direction / np.linalg.norm(direction))
-
-
-def _along(values: NDArray[Any], axis: int, dimension: int) -> NDArray[Any]:
-    """Return values as an array that varies along one axis of a lattice only."""
-    return values.reshape([-1 if a == axis else 1 for a in range(dimension)])
 
 
 def make(
@@ -242,45 +230,4 @@ def make(
         world: all processes that work on it.
         ranks: how many threads do as ranks, without any `world`.
     """
-    case = bench.case(size, numerics)
-    if bench.whole is not None:
-        return Simulation(case, threads, ranks=ranks, world=world).core
-    settings = core_settings(case, threads)
-    settings.execution.ranks = ranks
-    simulation = _core.Simulation(settings, world.for_core() if world else None)
-    material = simulation.add_material(
-        **case.material["its"].for_core(), viscosity=(0.0, 0.0), damping=0.0
-    )
-    speed = SPEED[case.run.scheme]
-    volume = np.array([(CELL / PER_AXIS) ** bench.dimension])
-    at_rest = np.zeros((1, bench.dimension))
-    if bench.bodies == 0:
-        _add_grains(simulation, material, size, volume, speed)
-    if bench.loose:
-        edge = debris.SPREAD * size * CELL
-        place = debris.positions(bench.particles(size), edge)
-        motion = debris.velocities(place, edge, _translation(3, speed))
-        simulation.add_body("debris", material, place, motion, volume)
-        simulation.prepare()
-        return simulation
-    # One array at a time: the core has its own copy, and both are counted in the peak.
-    for body in range(bench.bodies):
-        place = positions(bench.dimension, size, body)
-        simulation.add_body(f"body {body}", material, place, at_rest, volume)
-        del place
-        approach = APPROACH * (1 - 2 * body) if bench.bodies > 1 else 0.0
-        motion = velocities(bench.dimension, size, speed, approach, bench.state > 0)
-        simulation.set_velocity(body, motion)
-        del motion
-    simulation.prepare()
-    return simulation
-
-
-def _add_grains(simulation: Any, material: int, count: int, volume: Array, speed: float) -> None:
-    spacing = CELL / PER_AXIS
-    ball, places = spheres.ball(spacing), spheres.centres(count, spacing)
-    translation = _translation(3, speed)
-    for body, centre in enumerate(places):
-        points = ball + centre
-        motion = spheres.velocities(points, places.mean(axis=0), spacing, translation)
-        simulation.add_body(f"ball {body}", material, points, motion, volume)
+    return Simulation(bench.case(size, numerics), threads, ranks=ranks, world=world).core

@@ -8,8 +8,14 @@ it costs beyond `elastic3d` is finding and sorting particles, and lanes and node
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
+
+from mpm3dpp.case.particles import Particles
+
+from .numerics import CELL, PER_AXIS
 
 Array = NDArray[np.float64]
 
@@ -18,18 +24,17 @@ SPREAD = 1.6  # Edge of the cloud over that of a cube of as many particles, eigh
 EXPANSION = 0.1
 
 
-def positions(count: int, edge: float) -> Array:
-    """Return particles at random in a cube, shape (count, 3) [m]; the same ones each time."""
-    return np.random.default_rng(1).random((count, 3)) * edge
+def tables(size: int, translation: Array) -> dict[str, Any]:
+    """Return the cloud of the case, with as many particles as a cube of `size` cells along an edge.
 
-
-def velocities(places: Array, edge: float, translation: Array) -> Array:
-    """Return translation + even expansion [m/s], shape (n, 3).
-
-    Args:
-        places: of the particles [m].
-        edge: of the cloud [m].
-        translation: velocity of its middle [m/s].
+    They lie at random, the same each time, and fly with translation + even expansion.
     """
-    growth = EXPANSION * float(np.linalg.norm(translation))
-    return np.asarray(translation + (places - 0.5 * edge) * (growth / edge))
+    edge = SPREAD * size * CELL
+    places = np.random.default_rng(1).random(((PER_AXIS * size) ** 3, 3)) * edge
+    rate = EXPANSION * float(np.linalg.norm(translation)) / edge
+    velocity = [
+        {"expression": f"{v:.17g} + {rate:.17g} * ({x} - {0.5 * edge:.17g})"}
+        for v, x in zip(translation, "xyz", strict=True)
+    ]
+    cloud = {"material": "its", "particles": Particles(places), "velocity": velocity}
+    return {"body": {"debris": cloud}}

@@ -14,7 +14,8 @@ import numpy as np
 
 from mpm3dpp.grains import GrainCentres
 
-CELL = 1e-3  # [m]
+from .numerics import CELL
+
 RADIUS = 2.75 * CELL  # Of a disc: 5.5 cells across.
 PARTICLES = 95  # Of a disc, about.
 TURNING = 2 * math.pi  # [rad/s], 60 rpm.

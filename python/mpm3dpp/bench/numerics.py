@@ -4,18 +4,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import reduce
+from operator import getitem
 from typing import Any, NamedTuple
 
 from mpm3dpp.base.errors import CaseError, key_text
 from mpm3dpp.base.model import plain
 from mpm3dpp.case.case import Case
 
-_PATHS = {
-    "basis": ("grid", "basis"),
-    "transfer": ("run", "transfer"),
-    "scheme": ("run", "scheme"),
-    "preset": ("preset",),
-}
+CELL = 1e-3
+"""Size of the cells of all benchmarks [m]."""
+PER_AXIS = 2
+"""Particles of a cell along each axis, but where a frame has more by default."""
 
 
 class Numerics(NamedTuple):
@@ -26,12 +26,14 @@ class Numerics(NamedTuple):
         transfer: `run.transfer`.
         scheme: `run.scheme`.
         preset: `preset`.
+        frame: `frame` of all bodies and grains that deform.
     """
 
     basis: str | None = None
     transfer: str | None = None
     scheme: str | None = None
     preset: str | None = None
+    frame: str | None = None
 
     @classmethod
     def of_words(cls, words: Iterable[str]) -> Numerics:
@@ -48,21 +50,30 @@ DEFAULT = Numerics()
 
 
 def case_of(tables: dict[str, Any], numerics: Numerics) -> Case:
-    """Return the case of tables that say nothing of numerics, with these.
+    """Return the case of tables that say nothing of numerics, and are given these.
 
     Raises:
         CaseError: of the word that is wrong, by its name here.
     """
-    whole = {key: dict(table) for key, table in tables.items()}
+    paths: dict[str, list[tuple[str, ...]]] = {
+        "basis": [("grid", "basis")],
+        "transfer": [("run", "transfer")],
+        "scheme": [("run", "scheme")],
+        "preset": [("preset",)],
+        "frame": [
+            (kind, name, "frame")
+            for kind in ("body", "grains")
+            for name, part in tables.get(kind, {}).items()
+            if "motion" not in part
+        ],
+    }
     for name, value in numerics._asdict().items():
-        if value is None:
-            continue
-        *above, key = _PATHS[name]
-        (whole[above[0]] if above else whole)[key] = value
+        for *above, key in paths[name] if value is not None else ():
+            reduce(getitem, above, tables)[key] = value
     try:
-        return Case.from_tables(whole, "", {})
+        return Case.from_tables(tables, "", {})
     except CaseError as error:
-        names = {key_text(path): name for name, path in _PATHS.items()}
+        names = {key_text(path): name for name, found in paths.items() for path in found}
         if error.key not in names:
             raise
         rule, remedy = error.rule, error.remedy
@@ -70,10 +81,12 @@ def case_of(tables: dict[str, Any], numerics: Numerics) -> Case:
 
 
 def words_of(case: Case) -> dict[str, Any]:
-    """Return basis, transfer, scheme and preset of a case, as a result names them."""
+    """Return basis, transfer, scheme, preset and frame of a case, as a result names them."""
+    deform = (part for name, part in case.parts().items() if not case.is_rigid(name))
     return {
         "basis": case.grid.basis,
         "transfer": plain(case.run.transfer),
         "scheme": case.run.scheme,
         "preset": case.preset,
+        "frame": next(deform).frame,
     }

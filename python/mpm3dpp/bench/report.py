@@ -8,7 +8,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from .cases import BENCHES, SPEED
+from mpm3dpp.base.frames import MATERIAL
+
+from .cases import BENCHES
 from .result import counted
 
 
@@ -106,7 +108,10 @@ def show_series(results: list[dict[str, Any]]) -> None:
 def numerics(result: dict[str, Any]) -> str:
     """Return what the numerics were, in a few words."""
     preset = f'preset "{result["preset"]}": ' if result["preset"] else ""
-    return f"{preset}{result['basis']}, {result['transfer'].upper()}, {result['scheme'].upper()}"
+    step = f"{result['transfer'].upper()}, {result['scheme'].upper()}, "
+    # Whatever these are, a body in the material frame makes the same steps.
+    step = "" if result["frame"] == MATERIAL else step
+    return f"{preset}{result['basis']}, {step}{result['frame']} frame"
 
 
 def _about_bandwidth(first: dict[str, Any]) -> tuple[str, ...]:
@@ -118,7 +123,8 @@ def _about_bandwidth(first: dict[str, Any]) -> tuple[str, ...]:
 
 
 def _not_counted(limit: str, result: dict[str, Any]) -> str:
-    return f'{limit:10} not counted for transfer = "{result["transfer"]}"'
+    key = "frame" if result["frame"] == MATERIAL else "transfer"
+    return f'{limit:10} not counted for {key} = "{result[key]}"'
 
 
 _ABOUT_EXCHANGE = (
@@ -220,10 +226,12 @@ def lines(result: dict[str, Any]) -> list[str]:
             f"{result['reductions']:.1f} reductions; imbalance {imbalance}"
         )
     if "contact_ratio" in result:
+        touching = f"{result['overlapped_nodes']:,} overlapped nodes"
+        if result["frame"] == MATERIAL:
+            touching = f"{result['touching_points']:,} points of surfaces touch"
         found.append(
             f"contact    {result['contact_ratio']:.3f} times the same without contact "
-            f"({result['without_contact_ns']:.1f} ns); {result['overlapped_nodes']:,} overlapped "
-            "nodes"
+            f"({result['without_contact_ns']:.1f} ns); {touching}"
         )
     bench = BENCHES[result["bench"]]
     twin = bench.twin
@@ -232,7 +240,7 @@ def lines(result: dict[str, Any]) -> list[str]:
             f"against    {twin}, in turns: {result[f'{twin}_ratio']:.3f} times its "
             f"{result[f'{twin}_ns']:.1f} ns (median of the blocks' ratios)"
         )
-    if SPEED[result["scheme"]] == 0.0 and bench.whole is None:
+    if result["scheme"] == "usl" and bench.flies:
         found.append("note       with USL the bodies stay in place: no particle crosses cells")
     found.append(f"machine    {result['machine']}, {result['isa']}")
     return found

@@ -7,6 +7,7 @@ import statistics
 from typing import Any
 
 from mpm3dpp import _core
+from mpm3dpp.base.frames import MATERIAL
 from mpm3dpp.base.machine import processor_name
 from mpm3dpp.case.case import Case
 
@@ -58,6 +59,7 @@ def result_of(
         "arithmetic_GFLOPS": last["arithmetic"],
         **_shares("operations", "arithmetic", made, median, last),
         "overlapped_nodes": last["overlapped_nodes"],
+        "touching_points": last["touching_points"],
     }
     if part.on_device:
         result["device_bytes_per_particle"] = last["device_bytes"] / count
@@ -77,11 +79,11 @@ def counted(
 
     Args:
         bench: which one.
-        words: with `basis` and `transfer`; for a transfer that is not counted nothing is returned.
+        words: with `basis`, `transfer` and `frame`; for what is not counted nothing is returned.
         stages: names of those of a step.
     """
     basis, transfer, d = words["basis"], words["transfer"], bench.dimension
-    if transfer not in TAKES:
+    if transfer not in TAKES or words["frame"] == MATERIAL:
         return {}, {}
     moved = bytes_per_particle_step(stages, d, transfer, bench.state)
     return moved, operations_per_particle_step(stages, d, basis, transfer, bench.law)

@@ -3,8 +3,7 @@
 
     python -m mpm3dpp.bench.worker NAME SIZE THREADS SCHEME WARM_UP [DEVICE [KEY=VALUE ...]]
 
-Scheme "-" is that of a case which says nothing; keys are `basis`, `transfer` and `preset`, and
-`scheme` again.
+Scheme "-" is that of a case which says nothing; keys are those of `Numerics`.
 It answers commands on standard input with one line of JSON each on standard output: `block N`
 makes and times N steps, `finish` reads the memory and then, in the same process and state of the
 machine, measures what it can do at best. Of several ranks the first one answers.
@@ -28,6 +27,9 @@ from mpm3dpp.run.device import CPU
 from .cases import BENCHES, FOREVER, make
 from .numerics import Numerics
 from .process import NO_WORD
+
+TOUCHING = ("overlapped_nodes", "touching_points")
+"""Of `contact_summary`: how much touches, of bodies by their nodes and by their surfaces."""
 
 
 def status_bytes(field: str) -> int:
@@ -109,12 +111,12 @@ def main(arguments: list[str]) -> None:
         if command == "block":
             answer(timed_block(simulation, int(values[0])), ranks)
         elif command == "finish":
-            growth = status_bytes("VmHWM") - before
+            growth, touching = status_bytes("VmHWM") - before, simulation.contact_summary()
             result = {
                 "growth": ranks.comm.allreduce(growth) if ranks else growth,
                 "particles": simulation.particle_count,
                 "bytes": dict(simulation.bytes()),
-                "overlapped_nodes": simulation.contact_summary()["overlapped_nodes"],
+                **{key: touching[key] for key in TOUCHING},
                 "isa": _core.build_info()["isa"],
             }
             if device != CPU:

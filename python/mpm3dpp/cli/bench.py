@@ -40,6 +40,9 @@ def bench(
     preset: Annotated[
         str | None, typer.Option(help="preset of a case: paper for its linear basis.")
     ] = None,
+    frame: Annotated[
+        str | None, typer.Option(help="frame of all bodies that deform: material or updated.")
+    ] = None,
     device: BenchDevices = BenchDevice.cpu,
     steps: Annotated[int | None, typer.Option(min=1, help="Steps that are timed; 400.")] = None,
     json: Json = False,
@@ -56,7 +59,8 @@ def bench(
     from mpm3dpp.bench import Numerics
     from mpm3dpp.bench import main as measure
 
-    numerics = Numerics(basis, transfer, None if scheme is None else scheme.value, preset)
+    said = None if scheme is None else scheme.value
+    numerics = Numerics(basis, transfer, said, preset, frame)
     counts = ranks or (1,)
     sizes, workers = size or (), threads or (1,)
     measure(name, sizes, workers, numerics, steps, json, plot, counts, device.value)
