@@ -16,9 +16,6 @@ from mpm3dpp.run.device import CPU
 
 from .numerics import DEFAULT, Numerics
 
-# Of glibc: what is freed leaves the process, so that its peak is what was in use; else it is 120
-# bytes a particle more of `elastic3d`, whose columns are too small to leave it otherwise.
-_ALLOCATOR = {"MALLOC_MMAP_THRESHOLD_": "1000000"}
 NO_WORD = "-"
 """In the place of the scheme where none is given."""
 
@@ -57,7 +54,7 @@ class Process:
             part.device,
             *part.numerics.words(),
             by=by,
-            env=os.environ | _ALLOCATOR | added,
+            env=os.environ | added,
             stdout=subprocess.PIPE,
             start_new_session=True,  # Ctrl-C is for this process, whose end ends that one.
         )

@@ -99,6 +99,7 @@ def main(arguments: list[str]) -> None:
     numerics = Numerics.of_words(arguments[6:])
     if scheme != NO_WORD:
         numerics = numerics._replace(scheme=scheme)
+    _core.return_freed_memory()  # as `mpm3dpp run` does
     BENCHES[name].case(size, numerics)  # What reads cases is in memory before it is measured.
     forget_peak()
     before = status_bytes("VmRSS")

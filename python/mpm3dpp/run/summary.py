@@ -9,6 +9,7 @@ import textwrap
 import numpy as np
 
 from mpm3dpp import _core
+from mpm3dpp.base.frames import MATERIAL
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.frame import in_body
 from mpm3dpp.case.load_pieces import pieces
@@ -17,6 +18,8 @@ from mpm3dpp.fill.advisories import fastest, notes
 from mpm3dpp.fill.build import warnings
 from mpm3dpp.fill.parts import Filled, FilledPart, Particles
 from mpm3dpp.fill.point_warnings import point_warnings
+from mpm3dpp.fill.surface_points import ALONG, point_spacing
+from mpm3dpp.grains.packing import ball_volume
 from mpm3dpp.io.background import FRAME_SHARE
 from mpm3dpp.materials import Failure, catalogue, state_columns
 from mpm3dpp.plots.labels import scaled
@@ -37,6 +40,7 @@ _FRAME_BYTES = (
 # its material, and a node that it reaches, with those that lie beside it in blocks and in contact.
 # (Before particles are made, PARTICLE_BYTES_WITH_GRID of machine.py stands for both together.)
 _PARTICLE_BYTES, _NODE_BYTES = {2: 96, 3: 128}, {2: 150, 3: 200}
+_POINT_BYTES = {2: 190, 3: 230}  # Of a contact point of a surface, with those near to it.
 
 
 _HISTORY_BYTES = 8 * (_core.Simulation.history_capacity + 1) * len(_core.history_terms)
@@ -123,16 +127,35 @@ def memory_bytes(case: Case, bodies: Filled) -> int:
     transfer, D = _core.transfers[case.run.transfer.word], case.grid.dimension
     taken = 8 * (D * D * transfer["affine"] + D * transfer["filters"] + case.has_set_back)
     reached = np.arange(basis["nodes"]) - basis["before"]  # From a cell's own node, along an axis.
+    apart = point_spacing(case, bodies.parts.values())
     for part in bodies.parts.values():
         state = state_columns(case.material[part.material].models)
         each = _PARTICLE_BYTES[D] + taken + 8 * len(state)
+        if kept := case.parts()[part.name].frame == MATERIAL:
+            each += 8 * (D + D * D) - taken  # Where it was, and the deformation.
         total += each * part.count
+        if kept and apart is not None:
+            total += round(_POINT_BYTES[D] * _surface(case, part) / (apart / ALONG[D]) ** (D - 1))
         for some in part.chunks():
             nodes, strides = _cells(case, some, basis["own_node"])
             for stride in strides:
                 nodes = np.unique(np.add.outer(stride * reached, nodes))
-            total += _NODE_BYTES[D] * len(nodes)
+            total += (_NODE_BYTES[D] + 8 * 4 * kept) * len(nodes)
     return total
+
+
+def _surface(case: Case, part: FilledPart) -> float:
+    """Return about the surface of the bodies of a part [m^2; in 2D m]: of others than balls that of
+    the cells which hold particles."""
+    D = case.grid.dimension
+    if part.balls is not None:
+        radii = np.asarray(part.balls[1], dtype=float)
+        return float((D / radii * ball_volume(radii, D)).sum())
+    faces = 0
+    for some in part.chunks():
+        cells, strides = _cells(case, some, 0.0)
+        faces += sum(2 * int((~np.isin(cells + stride, cells)).sum()) for stride in strides)
+    return faces * float(case.grid.cell_size) ** (D - 1)
 
 
 def process_bytes(core: int, frames: int = 0) -> int:
