@@ -2,6 +2,7 @@
 // Scatter with the four numbers of half a node's record in the lanes, for any basis: particles
 // follow each other in the order of their numbers, and the sums of a layer of nodes stay in
 // registers. No lane is idle for want of particles (decision 0018).
+#include "mpm/schedule/lattice_in_lanes.hpp"
 #include "mpm/schedule/payload.hpp"
 #include "mpm/schedule/record_arithmetic.hpp"
 #include "mpm/schedule/weights.hpp"
@@ -66,6 +67,14 @@ class RecordsInLanes {
         records_in_lanes::NodeSum node{{}, {sum}, {sum}};
         Mapping::give_momentum(p, functions(places, k, x, y, z), node);
       });
+    if constexpr (what == gives_forces && requires { Mapping::finds_lattices; })
+      if (n == 1 << D && is_lattice<D>(places)) {
+        const Nodes<width> forces = nodes.at(force_at);
+        sum_lattice<D, count>(places, payload,
+                              [&](int x, int y, int z, const Half& sum)
+                                  MPM_INLINE { add(forces[stride_.to(x, y, z)], sum); });
+        return;
+      }
     if constexpr ((what & gives_forces) != 0)
       give_sums(nodes.at(force_at), n, [&](int k, auto x, auto y, auto z, Half& sum) MPM_INLINE {
         records_in_lanes::Stress<D> p;

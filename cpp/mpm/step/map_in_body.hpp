@@ -7,6 +7,10 @@
 
 namespace mpm {
 
+struct MappingInBody : Mapping<Flip> {
+  static constexpr bool finds_lattices = true;  // as particles stay where they are
+};
+
 /// -V_p (sigma_p - q_p 1 + s_p) F_p^-T / h of the particles of a patch, to its nodes.
 template <int lanes, int D, BasisModel B>
 [[gnu::noinline, gnu::flatten]] void scatter_in_body(const B& basis, const TileGrid<D>& grid,
@@ -16,7 +20,7 @@ template <int lanes, int D, BasisModel B>
   const LocalPosition<D> local_position(grid, pool);
   const ForceStress<D> stress_of(pool);
   const double minus_per_cell_size = -1.0 / grid.cell_size;
-  DoubleBuffer<Mapping<Flip>, gives_forces, D, B, record> cells(NodeStrides<D>(patch.shape), nodes);
+  DoubleBuffer<MappingInBody, gives_forces, D, B, record> cells(NodeStrides<D>(patch.shape), nodes);
   for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     cells.begin(cell);
     for_each_group<lanes>(cell, [&](const auto& rows) {
