@@ -27,13 +27,13 @@ def block(lower: float, upper: float, per_cell: int) -> dict[str, Any]:
     }
 
 
-def pressed(on: str, end: float, per_cell: int) -> np.ndarray:
+def pressed(on: str, end: float, per_cell: int, **grid_words: str) -> np.ndarray:
     """Return stresses over the pressure of a block that is pressed on what begins at x = end cells,
     of rows behind each other from there on."""
     end *= CELL
     bodies = {"a": block(end, end + 6 * CELL, per_cell)}
     rigid = {"density": 1e4, "strength": {"rigid": {}}}
-    grid: dict[str, Any] = {"dimension": 2, "cell_size": CELL}
+    grid: dict[str, Any] = {"dimension": 2, "cell_size": CELL, **grid_words}
     if on == "wall":
         corners = {"lower": [0.0, -4 * CELL], "upper": [20 * CELL, 16 * CELL]}
         grid["box"] = {**corners, "walls": {"x_min": "contact"}}
@@ -67,15 +67,17 @@ def stresses(simulation: Simulation, body: str) -> np.ndarray:
     return stress[np.argsort(along, kind="stable")].reshape(len(np.unique(along.round(9))), -1)
 
 
+@pytest.mark.parametrize("basis", ["quadratic_bspline", "gimp"])
 @pytest.mark.parametrize("per_cell", [2, 3])
 @pytest.mark.parametrize(
     ("on", "end"), [("wall", 0.0), ("plate", 0.0), ("plate", 0.25), ("plate", 0.8), ("block", 0.0)]
 )
-def test_what_is_pressed_on_another(on: str, end: float, per_cell: int) -> None:
+def test_what_is_pressed_on_another(on: str, end: float, per_cell: int, basis: str) -> None:
     """Forces behind the surface, by linear functions: .45 to .79 and .9 to 1.34 of the pressure in
-    the first two rows. Beside an edge half of the points of each face stand for both."""
-    stress = pressed(on, end, per_cell)
-    assert np.abs(stress[:, 2:-2] + 1.0).max() < 0.015
+    the first two rows. Beside an edge half of the points of each face stand for both, and there is
+    .86 of it at the least. To 1.4 % inside, with GIMP 1.9 %."""
+    stress = pressed(on, end, per_cell, basis=basis)
+    assert np.abs(stress[:, 2:-2] + 1.0).max() < (0.02 if basis == "gimp" else 0.015)
     assert np.abs(stress + 1.0).max() < 0.15
 
 

@@ -1,4 +1,7 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
+
 #include "mpm/basis/axis_weights.hpp"
 
 namespace mpm {
@@ -22,12 +25,25 @@ struct Gimp {
   static constexpr double own_node = 0.5;
   static constexpr bool odd_at_fixed_walls = false;
   static constexpr double second_moment = 0.0;  // |u| + 2 A - u^2 is another at each place
+  static constexpr double second_derivative[nodes] = {1.0, -2.0, 1.0};  // differences
 
   double l;  // half the particle's edge [cells], at most 1/2
 
   // No more than half a cell: a wider box would reach a fourth node, which blocks do not hold.
   MPM_HD explicit Gimp(double edge) : l(min(0.5 * edge, 0.5)) {}
   MPM_HD double half_width() const { return l; }
+
+  /// See BasisModel: with it N of the outermost node at a flat face is the sum of 2 a dN, a =
+  /// |away|, over the particles behind, 2 a apart: with boxes 2 a wide the hat at the face. Behind
+  /// a face that lies askew there are no such rows: b counts by `part`.
+  double second_order(double xi, double away, double part) const {
+    const double a = std::abs(away), s = away > 0.0 ? xi - 0.5 : 0.5 - xi;
+    const auto slope = [&](double at) { return std::clamp(0.5 / l * (at + l), 0.0, 1.0); };
+    double N = 0.0;
+    for (double at = s; at > -l; at -= 2.0 * a) N += 2.0 * a * slope(at);
+    const double over = std::max(l - std::abs(s), 0.0);
+    return part * (N - (std::max(s, 0.0) + 0.25 / l * over * over) - a * slope(s));
+  }
 
   template <class T>
   MPM_HD AxisWeights<T, nodes> along(T xi) const {

@@ -28,15 +28,12 @@ struct QuadraticBSpline {
   MPM_HD explicit QuadraticBSpline(double /*edge*/) {}
   MPM_HD double half_width() const { return 0.5; }  // it is the hat averaged over a cell
 
-  /// What stands for d^2 / 2 beside the second derivatives of N in the weights at a place that is
-  /// `away` from a particle on the surface of its body [cells], along an axis: r (2 a - r) / 2 with
-  /// a = |away| and r what is left, by steps of 2 a, of the way from the particle back to the knot.
-  /// With it N at a flat face is the sum of 2 a dN over the particles behind, 2 a apart: it is d^2
-  /// / 2 but where a particle's part of the body has a knot in it, which its one point does not
-  /// see.
-  static double second_order(double xi, double away) {
+  /// See BasisModel: r (2 a - r) / 2 with a = |away| and r what is left, by steps of 2 a, of the
+  /// way from the particle back to the knot. With it N at a flat face is the sum of 2 a dN over the
+  /// particles behind, 2 a apart: it is d^2 / 2 but where a particle's part of the body has a knot
+  /// in it, which its one point does not see.
+  static double second_order(double xi, double away, double /*part*/) {
     const double a = std::abs(away);
-    if (!(a > 0.0)) return 0.0;
     const double back = away > 0.0 ? xi : 1.0 - xi;
     const double r = back - 2.0 * a * std::floor(back / (2.0 * a));
     return 0.5 * r * (2.0 * a - r);

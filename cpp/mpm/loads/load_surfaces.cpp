@@ -1,5 +1,4 @@
 #include <array>
-#include <cassert>
 
 #include "mpm/comm/all_sums.hpp"
 #include "mpm/loads/carry_loads.hpp"
@@ -25,16 +24,15 @@ auto by_own_functions(const TileGrid<D>& grid, const ParticlePool<D>& pool, cons
                       const CellRange<D>& cell, std::uint32_t row, const Vec<double, D>& arm,
                       const B& basis) {
   std::array<AxisWeights<double, B::nodes>, D> w;
-  std::array<double, D> d, b;
-  Vec<double, D> place;
+  const Vec<double, D> d = (1.0 / grid.cell_size) * arm;
+  Vec<double, D> xi, place;
   for (int a = 0; a < D; ++a) {
     const auto k = static_cast<std::size_t>(a);
-    const double xi = local_coordinate(grid.in_cells(pool.listed(a)[row], a), cell.cell[k]);
-    w[k] = basis.along(xi);
-    d[k] = arm[a] / grid.cell_size;
-    b[k] = basis.second_order(xi, d[k]);
-    place[a] = grid.origin[a] + grid.cell_size * (cell.cell[k] + xi - B::own_node + d[k]);
+    xi[a] = local_coordinate(grid.in_cells(pool.listed(a)[row], a), cell.cell[k]);
+    w[k] = basis.along(xi[a]);
+    place[a] = grid.origin[a] + grid.cell_size * (cell.cell[k] + xi[a] - B::own_node + d[a]);
   }
+  const Vec<double, D> b = second_order_of(basis, xi, d);
   const int first = cell.first_node;
   const BlockShape<D>& shape = patch.shape;
   const auto nodes = [=, &shape](auto&& g) {
@@ -45,7 +43,8 @@ auto by_own_functions(const TileGrid<D>& grid, const ParticlePool<D>& pool, cons
       double N = 1.0;
       for (std::size_t a = 0; a < D; ++a) N *= w[a].N[along(a)];
       for (std::size_t a = 0; a < D; ++a) {
-        double more = d[a] * w[a].dN[along(a)] + b[a] * B::second_derivative[along(a)];
+        const auto k = static_cast<int>(a);
+        double more = d[k] * w[a].dN[along(a)] + b[k] * B::second_derivative[along(a)];
         for (std::size_t c = 0; c < D; ++c)
           if (c != a) more *= w[c].N[along(c)];
         N += more;
@@ -57,36 +56,23 @@ auto by_own_functions(const TileGrid<D>& grid, const ParticlePool<D>& pool, cons
   return CarriedPiece{place, nodes};
 }
 
-/// By the linear functions at the place of the piece, held between the nodes around its particle,
-/// or within the box over which the particle's function is a mean: there all nodes have mass.
+/// By the linear functions at the place of the piece, held between the nodes around its particle:
+/// they have mass.
 template <int D>
 auto by_linear_functions(const TileGrid<D>& grid, const ParticlePool<D>& pool,
                          const Patch<D>& patch, const CellRange<D>& cell, std::uint32_t row,
-                         const Vec<double, D>& arm, double reach) {
+                         const Vec<double, D>& arm) {
   const NodesAround<D> around(grid, pool, patch, cell, row);
-  Index<D> shift{};  // to the nodes around the piece
   std::array<double, D> xi;
+  Vec<double, D> place;
   for (std::size_t k = 0; k < D; ++k) {
     const auto a = static_cast<int>(k);
     const double x = around.place[a] - around.lower[k];
-    // No further than the nodes beside the cell's own, which the block holds: rounding may put x
-    // beyond its cell. The load then acts too deep, by half a spacing at most
-    // (docs/theory/step.md).
-    const int own = cell.cell[k] - around.lower[k];
-    const double low = std::max(std::min(0.0, x - reach), own - 1.0);
-    const double high = std::min(std::max(1.0, x + reach), own + 1.0);
-    xi[k] = std::clamp(x + arm[a] / grid.cell_size, low, high);
-    // With a box the point may lie between the next pair of nodes.
-    shift[k] = xi[k] < 0.0 ? -1 : xi[k] > 1.0 ? 1 : 0;
-    xi[k] -= shift[k];
+    xi[k] = std::clamp(x + arm[a] / grid.cell_size, 0.0, 1.0);
+    place[a] = grid.origin[a] + grid.cell_size * (around.lower[k] + xi[k]);
   }
-  Vec<double, D> place;
-  for (std::size_t k = 0; k < D; ++k)
-    place[static_cast<int>(k)] =
-        grid.origin[static_cast<int>(k)] + grid.cell_size * (around.lower[k] + shift[k] + xi[k]);
-  const int first = around.first + patch.shape.distance(shift);
+  const int first = around.first;
   const BlockShape<D>& shape = patch.shape;
-  assert(first >= 0 && first + shape.corner_offset.back() < shape.node_count);
   const auto nodes = [=, &shape](auto&& g) {
     for (int corner = 0; corner < Tile<D>::corners; ++corner) {
       double N = 1.0;
@@ -122,11 +108,10 @@ void for_each_loaded_piece(Domain<D>& domain, std::size_t p, std::size_t l, F&& 
     for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
       for_each_piece(
           static_cast<int>(l), pool, cell, [&](std::uint32_t row, SurfacePiece<D>& piece) {
-            if constexpr (requires { basis.second_order(0.0, 0.0); })
+            if constexpr (ActsOnFaces<B>)
               act(row, piece, by_own_functions(grid, pool, patch, cell, row, piece.arm, basis));
             else
-              act(row, piece,
-                  by_linear_functions(grid, pool, patch, cell, row, piece.arm, basis.half_width()));
+              act(row, piece, by_linear_functions(grid, pool, patch, cell, row, piece.arm));
           });
     });
   });
@@ -150,9 +135,8 @@ void start_loads(Domain<D>& domain) {
 
 /// f_i += sum over the pieces of N_i(x) f, x the middle of the piece: the surface term of the
 /// equation of motion (Sulsky, Chen & Schreyer 1994), with functions that are in balance with a
-/// uniform stress as particles give it to nodes. With GIMP and the linear basis these are the
-/// linear ones: the mean of grad N_i over a box is what the divergence theorem turns into N_i on
-/// its surface. B-splines are summed up at points, and have them of their own.
+/// uniform stress as particles give it to nodes. With GIMP and B-splines these are the particle's
+/// own, continued to the surface (decision 0071), with the linear basis the linear ones.
 template <int D>
 void scatter_loads(Domain<D>& domain, std::size_t p) {
   const NodeBlock<D> block = domain.grid.block(p);

@@ -6,9 +6,8 @@
 
 namespace mpm::reference {
 
-/// f(i, N) for the nodes around the middle of a piece, which is so far from its particle: N are the
-/// hats, at a place held between the nodes around the particle, or in the box over which the
-/// particle's own function is a mean.
+/// f(i, N) with other bases, for the nodes around the middle of a piece, which is so far from
+/// its particle: at a place held between the nodes around the particle.
 template <int D, class F>
 void for_each_hat_node(const Step<D>& step, const Vec<double, D>& particle,
                        const Vec<double, D>& middle, F&& f) {
@@ -16,8 +15,7 @@ void for_each_hat_node(const Step<D>& step, const Vec<double, D>& particle,
   Index<D> low, high;
   for (int a = 0; a < D; ++a) {
     const double at = particle[a] / step.h;
-    x[a] = std::clamp(at + middle[a] / step.h, std::min(std::floor(at), at - step.half_width),
-                      std::max(std::floor(at) + 1.0, at + step.half_width));
+    x[a] = std::clamp(at + middle[a] / step.h, std::floor(at), std::floor(at) + 1.0);
     low[static_cast<std::size_t>(a)] = static_cast<std::int32_t>(std::floor(x[a]));
     high[static_cast<std::size_t>(a)] = low[static_cast<std::size_t>(a)] + 1;
   }
@@ -28,26 +26,47 @@ void for_each_hat_node(const Step<D>& step, const Vec<double, D>& particle,
   });
 }
 
-/// f(i, W) with quadratic B-splines: N_ip + d . grad N_ip + sum_k b_k d2N_ip/dx_k^2, d the way from
-/// the particle to a place. b = r (2 a - r) / 2, a = |out_k|, r what is left of the way from the
-/// particle back to the knot when steps of 2 a have been taken off; `out`, the way from the
-/// particle out of the body, is d for the middle of a piece.
+/// b of a particle and of a face so far from it along an axis [cells], from what W_i of the
+/// outermost node is where a stress is in balance with a pressure on the face: the sum of 2 a dN
+/// over the particles behind, 2 a apart, with a = |out|. It is no more than |out| (N / l)^1/2 of
+/// either node, l half the width of the box over which N is the mean of the hat; `part`, what the
+/// normal's square has along the axis, counts for GIMP.
+template <int D>
+double second_order_of(const Step<D>& step, double at, double out, double part) {
+  if (std::abs(out) < 1e-4) return 0.0;  // b is of the order of its square
+  const double outwards = out > 0.0 ? 1.0 : -1.0, own = std::floor(at + 0.5);
+  const auto S = [&](double x, double side) { return step.S(x - own - side); };
+  double W = 0.0;
+  for (double x = at; std::abs(x - own - outwards) < 2.0; x -= 2.0 * out)
+    W += 2.0 * out * S(x, outwards).dN;
+  const double b = W - S(at, outwards).N - out * S(at, outwards).dN;
+  const double l = step.spline ? 0.5 : step.box, least = std::min(S(at, 1.0).N, S(at, -1.0).N);
+  const double most = std::abs(out) * std::sqrt(std::max(least, 0.0) / l);
+  return std::clamp(step.spline ? b : part * b, -most, most);
+}
+
+/// f(i, W) with GIMP and quadratic B-splines: N_ip + d . grad N_ip + sum_k b_k d2N_ip/dx_k^2, d the
+/// way from the particle to a place; `out`, the way from the particle out of the body, is d for the
+/// middle of a piece. At edges b fades as the face leans from an axis.
 template <int D, class F>
-void for_each_spline_node(const Step<D>& step, const Vec<double, D>& particle,
-                          const Vec<double, D>& d, const Vec<double, D>& out, F&& f) {
+void for_each_node_at(const Step<D>& step, const Vec<double, D>& particle, const Vec<double, D>& d,
+                      const Vec<double, D>& out, bool at_edge, F&& f) {
+  Vec<double, D> b = Vec<double, D>::zero();
+  for (int k = 0; k < D; ++k) {
+    const double part = dot(out, out) > 0.0 ? out[k] * out[k] / dot(out, out) : 0.0;
+    b[k] = second_order_of(step, particle[k] / step.h, out[k] / step.h, part);
+    if (at_edge) b[k] *= std::max(4.0 * part - 3.0, 0.0);
+  }
   step.for_each_node(particle, [&](const Index<D>& i, double N, const Vec<double, D>& dN) {
-    double W = N;
+    double W = N + dot(d, dN);
     for (int k = 0; k < D; ++k) {
-      W += d[k] * dN[k];
-      const double a = std::abs(out[k]) / step.h;
-      if (a == 0.0) continue;
-      const double at = particle[k] / step.h, knot = std::floor(at + 0.5) - 0.5;
-      double r = out[k] > 0.0 ? at - knot : knot + 1.0 - at;
-      while (r >= 2.0 * a) r -= 2.0 * a;
-      double second = std::abs(at - i[static_cast<std::size_t>(k)]) < 0.5 ? -2.0 : 1.0;
+      const auto along = [&](int l) {
+        return particle[l] / step.h - i[static_cast<std::size_t>(l)];
+      };
+      double second = std::abs(along(k)) < 0.5 ? -2.0 : 1.0;
       for (int l = 0; l < D; ++l)
-        if (l != k) second *= quadratic(particle[l] / step.h - i[static_cast<std::size_t>(l)]).N;
-      W += 0.5 * r * (2.0 * a - r) * second;
+        if (l != k) second *= step.S(along(l)).N;
+      W += b[k] * second;
     }
     f(i, W);
   });
@@ -57,15 +76,14 @@ void for_each_spline_node(const Step<D>& step, const Vec<double, D>& particle,
 template <int D, class F>
 void for_each_loaded_node(const Step<D>& step, const Vec<double, D>& particle,
                           const Vec<double, D>& middle, F&& f) {
-  if (step.spline)
-    for_each_spline_node(step, particle, middle, middle, f);
+  if (step.spline || step.box > 0.0)
+    for_each_node_at(step, particle, middle, middle, false, f);
   else
     for_each_hat_node(step, particle, middle, f);
 }
 
 /// f_i += sum N_i(x) f over the pieces, f = -p a or t |a|, of p and t the means over the step; x is
-/// the middle of the piece. N_i are the hats, but with B-splines; for hats x is held between the
-/// nodes around the particle, or in the box over which the particle's own function is a mean.
+/// the middle of the piece.
 template <int D>
 void load_surfaces(Step<D>& step) {
   for (Body<D>& b : step.bodies)

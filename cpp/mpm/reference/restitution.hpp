@@ -50,7 +50,6 @@ template <int D>
 void restitute(Surfaces<D>& surfaces) {
   std::map<std::pair<std::size_t, Whom>, Meeting<D>> all;
   for (const SurfaceTouch<D>& t : surfaces.touches) {
-    if (!(norm(t.push) > 0.0)) continue;
     const auto b = static_cast<std::size_t>(t.whom);
     if (!is_face(t.whom) && b == t.body) continue;
     const bool is_first = is_face(t.whom) || t.body < b;

@@ -35,8 +35,8 @@ struct Step {
   std::function<ShapeValue(double)> S;        // shape function along an axis, of d [cells]
   std::optional<double> averages;      // volumes over cells that begin so far before nodes [cells]
   std::function<double(double)> edge;  // of a particle of a volume [m], for springs
-  double half_width = 0.0;             // of the box over which it is the mean of the hat [cells]
   bool spline = false;                 // is it the quadratic B-spline?
+  double box = 0.0;                    // of uniform GIMP half the width of its boxes [cells]
   Walls<D> walls{};                    // the grid's node 0 is the lower corner of the box
   std::vector<Body<D>> bodies;
   std::vector<Load<D>> loads;

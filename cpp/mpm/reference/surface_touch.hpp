@@ -45,7 +45,8 @@ struct Height {
   }
   template <class T>
   T zeta(const T& S) const {
-    return std::sqrt(R * R - a * a * std::pow(S / S_1, 1.0 / m));
+    const T square = R * R - a * a * std::pow(S / S_1, 1.0 / m);
+    return std::sqrt(std::real(square) > 0.01 ? square : T(0.01));
   }
 
   /// Of J_m(x), which is x^m times the integral of cos(x sin t) cos(t)^2m over -pi/2 < t < pi/2

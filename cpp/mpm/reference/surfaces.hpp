@@ -61,6 +61,7 @@ struct Surfaces {
     for_each_touch([&](const SurfaceTouch<D>& t) {
       if (overlap(t) > -0.5 * w) set_back[{t.body, t.point, t.whom}] = overlap(t) + 0.5 * w;
     });
+    for (SurfaceBody<D>& b : bodies) b.at_edges = hosts_at_edges(b.points);
   }
 
   /// At the end of a step: what acts in the next.
@@ -208,7 +209,7 @@ struct Surfaces {
     // k o, as it begins, and do/dt.
     const double spring = t.k * std::imag(stored(std::complex<double>(overlap(t), tiny))) / tiny;
     const double faster = -dot(t.push, u) / spring;
-    const double more = std::max(1.0 + eta * faster / spring, 0.0);
+    const double more = std::max(1.0 + eta * faster / spring, 0.01);
     t.push = more * t.push;
     for (Felt<D>& felt : t.felt) felt.push = more * felt.push;
   }

@@ -45,8 +45,7 @@ void add_surface(Simulation<D>& simulation, int number, const ContactPointsGiven
 
 namespace {
 
-/// The way over which springs begin: about what the fastest particles go in a step of the longest
-/// that is stable [m].
+/// The way over which springs begin, w of law.hpp [m].
 template <int D>
 double onset_of(const Domain<D>& domain) {
   double fastest = 0.0, wave = std::numeric_limits<double>::infinity();

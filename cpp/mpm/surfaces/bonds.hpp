@@ -1,8 +1,9 @@
 #pragma once
 // Bodies that are bonded: where their surfaces touch at the start a spring holds each contact point
 // to the place of the other body that it lies at then, in all directions,
-//   E = k |x_c - x_d|^2 / 2,   x_d = x_q + F_q (X_c - X_q),                                   (S5)
-// q being the nearest point there, and k the stiffness of a contact, (S1). So two bodies are held
+//   E = k |x_c - x_d|^2 / 2,                                                                  (S5)
+// x_d being (S0) of the place and the normal of c, carried by the host of the nearest point there,
+// and k the stiffness of a contact, (S1). So two bodies are held
 // by the springs of both, that bear as a quarter of a cell of each; the forces are along what lies
 // between, and turn nothing. The place d is a contact point without an area of its own, that
 // nothing else touches.

@@ -26,7 +26,7 @@ class SurfacePoint {
   static constexpr double reach = D == 2 ? 2.4725 : 2.3829;  // not less than R
 
   /// No surface is felt whose nearest point is farther off [spacings]: all around at that height
-  /// the sum is a quarter of S_1.
+  /// the sum is a sixth of S_1.
   static constexpr double farthest = 1.5;
 
   explicit SurfacePoint(double sum) {
@@ -57,7 +57,7 @@ class SurfacePoint {
   static constexpr double a = zero / (2.0 * std::numbers::pi), a2 = a * a;
   static constexpr double reach_squared = 1.0 + a2, m = n + 0.5 * (D - 1);  // R^2
   static_assert(reach * reach >= reach_squared && reach * reach < 1.001 * reach_squared);
-  // Deeper than this zeta the surface has no height any more, and the force stays as it is.
+  // Deeper than this zeta the overlap stays as it is, and the force is the gradient of no energy.
   static constexpr double least_zeta_squared = 0.01;
 
   template <int exponent, class T>

@@ -1,5 +1,5 @@
 #pragma once
-// The law of contact between surfaces. A point overlaps a opposite by o; a spring pushes it back
+// The law of contact between surfaces. A point overlaps an opposite by o; a spring pushes it back
 // with k o, and the stiffness k is that of a layer H of both bodies, a quarter of a cell, which is
 // about the stiffest that steps bear (decision 0071):
 //   k = (A / 2) / (H_a / M_a + H_b / M_b),   H = h / 4,   M = rho c^2,                        (S1)
@@ -9,7 +9,8 @@
 //
 // A step passes the kink at which a spring begins somewhere within it, and a flat hit, of all
 // points of a face at once, would gain or lose a few per cent of its energy by where. So it begins
-// softly over w, the way that the fastest bodies at the start go in a step, h / 20 at most:
+// softly over w, what the fastest particles of the start go while the slowest waves pass a cell,
+// h / 20 at most:
 //   f = k (o + w / 2)^2 / (2 w) from o = -w / 2 to w / 2, then k o.                         (S4)
 //
 // Friction (Cundall & Strack 1979) is a spring too, with a memory s for each point and opposite: it
@@ -20,7 +21,8 @@
 // Elastic bodies without any loss that slide flutter: constant friction drives waves along their
 // surfaces (Adams 1995). So a point that slides has a dashpot along the normal besides, a part of
 // what would let no wave back, Z = rho c of the start (after Oden & Martins 1985):
-//   f = k o + eta do/dt,   eta = 0.2 A / (1 / Z_a + 1 / Z_b),   0.4 A Z at a face.          (S6)
+//   f = k o + eta do/dt, .01 k o at least,   eta = 0.2 A / (1 / Z_a + 1 / Z_b),   0.4 A Z at a
+//   face.          (S6)
 #include <algorithm>
 #include <cmath>
 
@@ -32,6 +34,7 @@ inline constexpr double layer = 0.25;       // H over the cells' size
 inline constexpr double most_onset = 0.05;  // w over the cells' size
 inline constexpr double tangential = 0.8;   // k_t / k
 inline constexpr double of_waves = 0.2;     // eta over A Z of both
+inline constexpr double least_push = 0.01;  // f over k o
 
 /// Of a point of that area against another body, (S1) [N/m]; 1 / M of a rigid body is 0.
 inline double stiffness_of_point(double area, double cell_size, double compliance,

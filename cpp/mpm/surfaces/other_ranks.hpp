@@ -4,6 +4,7 @@
 // now it is told in each step where it is and how it moves; what it pushes there it tells who has
 // it. All sums have the order of the parts, whoever has them.
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -33,7 +34,9 @@ struct Surfaces;
 template <int D>
 const HostElsewhere<D>& host_elsewhere(const Surfaces<D>& surfaces, std::uint32_t host) {
   const auto& all = surfaces.others.hosts;
-  return *std::ranges::lower_bound(all, host, {}, &HostElsewhere<D>::host);
+  const auto at = std::ranges::lower_bound(all, host, {}, &HostElsewhere<D>::host);
+  assert(at != all.end() && at->host == host);
+  return *at;
 }
 
 }  // namespace mpm

@@ -86,7 +86,8 @@ Friction<D> slide(const Domain<D>& domain, const SurfacePart<D>& part, SurfaceTo
   const Friction<D> friction = pushed_with(push);
   if (!friction.slides) return friction;
   const double damping = damping_of(domain, part, touch);
-  touch.pushed = std::max(touch.pushed - damping / touch.stiffness * dot(touch.slope, u), 0.0);
+  touch.pushed = std::max(touch.pushed - damping / touch.stiffness * dot(touch.slope, u),
+                          least_push * touch.pushed);
   touch.push = touch.stiffness * touch.pushed * touch.slope;
   return pushed_with(norm(touch.push));
 }

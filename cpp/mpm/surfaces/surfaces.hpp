@@ -181,7 +181,7 @@ struct Surfaces {
   std::vector<GivenPoint<D>> given;     // until the bodies have rows
   std::vector<std::uint32_t> given_of;  // of each point its place among these, until then
   double spacing = 0.0;  // e: the points of all bodies lie half of it behind their surfaces [m]
-  double onset = 0.0;    // way over which springs begin, that of a step at the start [m]
+  double onset = 0.0;    // w, way over which springs begin (law.hpp) [m]
   bool meet = false;     // do bodies touch each other by them?
 
   std::vector<SurfacePart<D>> parts;  // by body, then by tile
@@ -221,7 +221,7 @@ const SurfacePart<D>& part_of_point(const Surfaces<D>& surfaces, std::uint32_t p
   return surfaces.parts[surfaces.hosts[surfaces.points[point].host].part];
 }
 
-/// By how much the surface of a point is set back towards a opposite [m].
+/// By how much the surface of a point is set back towards an opposite [m].
 template <int D>
 double set_back_of(const Surfaces<D>& surfaces, std::uint32_t point, Opposite opposite) {
   if (surfaces.set_back.empty()) return 0.0;

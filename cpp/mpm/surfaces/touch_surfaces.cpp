@@ -184,6 +184,14 @@ void add_work_at_end(Domain<D>& domain, const SurfacePart<D>& part) {
   }
 }
 
+/// What the touches of a part pass to faces of the box.
+template <int D>
+void add_at_faces(Domain<D>& domain, const SurfacePart<D>& part) {
+  const double acts = time_of_forces(domain, true);
+  domain.sums[part.patch].angular.walls += acts * part.moment_of_faces;
+  domain.face_parts[part.patch].add(part.of_faces, acts);
+}
+
 }  // namespace
 
 template <int D>
@@ -218,11 +226,11 @@ void load_by_surfaces(Domain<D>& domain) {
       all.add(on.rub);
       give_to_nodes_of(domain, surfaces.hosts[on.host], all);
     }
-    if (!part.at_faces) return;
-    const double acts = time_of_forces(domain, domain.grid.patches[part.patch]);
-    domain.sums[part.patch].angular.walls += acts * part.moment_of_faces;
-    domain.face_parts[part.patch].add(part.of_faces, acts);
+    if (part.at_faces && !part.as_one) add_at_faces(domain, part);
   });
+  // These have no patch of their own, but write to that of another.
+  for (const SurfacePart<D>& part : surfaces.parts)
+    if (part.at_faces && part.as_one && !part.foreign) add_at_faces(domain, part);
 }
 
 template void touch_surfaces<2>(Domain<2>&);

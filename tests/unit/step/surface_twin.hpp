@@ -60,6 +60,7 @@ class SurfaceTwin {
     step.bodies.reserve(given.bodies.size());
     step.h = cell;
     step.spline = given.basis == basis_id<QuadraticBSpline>;
+    step.box = given.basis == basis_id<Gimp> ? 0.25 : 0.0;
     for (const BlocksGiven<D>& body : given.bodies) add(body);
     for (const auto& [a, b, law] : given.pairs) {
       set_pair_law(simulation->domain, a, b, law);

@@ -71,7 +71,7 @@ struct Pair {
     step.dt = dt;
     step.g[1] = -2e4;
     const double edge = simulation->domain.bodies[0].mean_edge / cell;
-    step.half_width = half_width(basis, edge);
+    step.box = basis == basis_id<Gimp> ? half_width(basis, edge) : 0.0;
     step.spline = basis == basis_id<QuadraticBSpline>;
     step.S = basis == basis_id<QuadraticBSpline>
                  ? std::function<reference::ShapeValue(double)>(reference::quadratic)

@@ -69,7 +69,7 @@ struct Twin {
     grid.has_dashpots = grid.walls.absorb();
     grid.has_wall_springs = grid.walls.touch();
     reference.S = shape(choice.basis, edge);
-    reference.half_width = half_width(choice.basis, edge);
+    reference.box = choice.basis == basis_id<Gimp> ? half_width(choice.basis, edge) : 0.0;
     reference.spline = choice.basis == basis_id<QuadraticBSpline>;
     domain.time_step = reference.dt = 1e-5;
     domain.step_before = reference.dt_before = 0.9e-5;
