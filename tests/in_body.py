@@ -7,10 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from mpm3dpp import Case, Simulation
+from mpm3dpp import Case, Simulation, _core
 
 CELL, DENSITY, E = 1e-3, 1000.0, 1e7
 SPEED = 100.0  # of waves along a bar of E, without contraction
+COLUMNS = list(_core.part_columns)
+
+
+def part(simulation: Simulation, name: str, body: int = 0) -> float:
+    """A column of the table of parts."""
+    return float(np.array(simulation.core.part_sums()[1])[body][COLUMNS.index(name)])
 
 
 def frame_tables(

@@ -10,17 +10,11 @@ import pytest
 
 from finite_ball import own_part
 from hertz_mindlin import Ball, chi, kappa, oblique_hit
-from in_body import run_and_look
-from mpm3dpp import Case, Simulation, _core
+from in_body import part, run_and_look
+from mpm3dpp import Case, Simulation
 
-COLUMNS = list(_core.part_columns)
 RADIUS, NU, DENSITY = 0.1, 0.3, 1000.0
 MASS = DENSITY * 4 / 3 * np.pi * RADIUS**3
-
-
-def part(simulation: Simulation, name: str, body: int = 0) -> float:
-    """A column of the table of parts."""
-    return float(np.array(simulation.core.part_sums()[1])[body][COLUMNS.index(name)])
 
 
 def hertz(circle: float, E: float) -> tuple[float, float]:

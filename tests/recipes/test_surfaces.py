@@ -8,23 +8,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from in_body import blocks, run_and_look
-from mpm3dpp import Case, Simulation, _core
+from in_body import blocks, part, run_and_look
+from mpm3dpp import Case, Simulation
 from same_bits import check_same_bits
 from worlds import check_worlds
 
-COLUMNS = list(_core.part_columns)
 FRAME = {"frame": "material"}
 RIGID = {"density": 2000.0, "strength": {"rigid": {}}}
 
 
 def elastic(E: float, nu: float, density: float) -> dict[str, Any]:
     return {"density": density, "strength": {"elastic": {"E": E, "nu": nu}}}
-
-
-def part(simulation: Simulation, name: str, body: int = 0) -> float:
-    """A column of the table of parts."""
-    return float(np.array(simulation.core.part_sums()[1])[body][COLUMNS.index(name)])
 
 
 def run(case: Case, every: int = 50, look: Any = None) -> tuple[Simulation, dict, list]:
@@ -122,7 +116,7 @@ def test_a_ball_slides_on_a_wall_by_coulombs_law() -> None:
 def test_a_plate_without_friction_does_not_drag() -> None:
     """The updated frame: .033 of the normal impulse, restitution 1.02."""
     impulse, restitution, spin = oblique(6, 0.0, plate=True)
-    assert abs(impulse[0]) < 0.002 > abs(impulse[2])
+    assert max(abs(impulse[0]), abs(impulse[2])) < 0.002
     assert 0.985 < restitution < 1.003
     assert abs(spin) < 0.01
 
@@ -218,10 +212,10 @@ def test_a_block_stays_below_the_angle_of_friction_and_slides_above() -> None:
     assert block_on_a_slope(25.0)[1] == pytest.approx(1.0, abs=0.02)
 
 
-@pytest.mark.parametrize("cells", [6, 20])
-def test_a_soft_block_hits_three_times(cells: int) -> None:
-    """Kinetic, internal and springs' energy less the work of gravity: .36 to .5 of it is left of
-    six cells in the updated frame."""
+@pytest.mark.parametrize(("cells", "left"), [(6, 0.975), (20, 0.99)])
+def test_a_soft_block_hits_three_times(cells: int, left: float) -> None:
+    """Kinetic, internal and springs' energy less the work of gravity: .980 and .996 are left, of
+    six cells .36 to .5 in the updated frame."""
     h, E, density = 1e-3, 1e6, 1000.0
     length, g = cells * h, 400.0 * 6 / cells
     end = 3 * 2.1 / g + 0.5 / g + 6 * length / np.sqrt(E / density)
@@ -241,7 +235,7 @@ def test_a_soft_block_hits_three_times(cells: int) -> None:
     )
     _, columns, _ = run(case)
     energy = columns["kinetic"] + columns["internal"] + columns["springs"] - columns["external"]
-    assert energy[-1] / energy[0] > 0.97
+    assert energy[-1] / energy[0] > left
     assert energy.max() / energy[0] < 1.005
 
 
@@ -276,12 +270,12 @@ def inner_gap(simulation: Simulation) -> float:
 
 def test_a_ring_touches_itself() -> None:
     """At 50 m/s its inner faces meet; without contact with itself they lie in each other. A program
-    apart rebounds with 36.4 at 45 and 37.7 at 60 m/s, which the speed is to lie between."""
+    apart rebounds with 36.4 at 45 and 37.7 at 60 m/s; 36.3 here, to 2 % of the former."""
     simulation, columns, gaps = run(ring(50.0, 1.6e-3), look=inner_gap)
     assert not simulation.core.warnings()
     energy = columns["kinetic"] + columns["internal"] + columns["springs"]
     assert 0.97 < energy[-1] / energy[0] < 1.005
-    assert -columns["momentum_x"][-1] / simulation.core.total_mass == pytest.approx(36.7, abs=1.0)
+    assert -columns["momentum_x"][-1] / simulation.core.total_mass == pytest.approx(36.4, rel=0.02)
     nearest = min(gap for _, gap in gaps)
     assert 0.0 < nearest < 1e-3
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from mpm3dpp.base.errors import key_text
+from mpm3dpp.base.frames import MATERIAL
 from mpm3dpp.base.model import CaseModel
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.detonation import EXPLOSIVE
@@ -106,7 +107,10 @@ def with_overlap(
 
 
 def fastest(case: Case, bodies: Filled) -> float:
-    """Return the largest sum of the speeds of a wave and of a particle at the start [m/s]."""
+    """Return the largest sum of the speeds of a wave and of a particle at the start [m/s].
+
+    That of particles does not count where nodes lie in the body.
+    """
     sound = {}
     for name, part in case.parts().items():
         material = case.material[part.material]
@@ -115,7 +119,8 @@ def fastest(case: Case, bodies: Filled) -> float:
         sound[name] = q + float(np.hypot(q, c))
     found = 0.0
     for name, filled in bodies.parts.items():
-        found = max(found, sound[name] + float(filled.survey.speeds.max()))
+        moves = case.parts()[name].frame != MATERIAL
+        found = max(found, sound[name] + moves * float(filled.survey.speeds.max()))
     return found
 
 

@@ -40,6 +40,7 @@ _FRAME_BYTES = (
 # its material, and a node that it reaches, with those that lie beside it in blocks and in contact.
 # (Before particles are made, PARTICLE_BYTES_WITH_GRID of machine.py stands for both together.)
 _PARTICLE_BYTES, _NODE_BYTES = {2: 96, 3: 128}, {2: 150, 3: 200}
+_MOST_CFL_OF_SPRINGS = 0.6  # of steps of contact between surfaces (decision 0071)
 _POINT_BYTES = {2: 190, 3: 230}  # Of a contact point of a surface, with those near to it.
 
 
@@ -56,19 +57,21 @@ def time_step(case: Case, bodies: Filled) -> float:
     if case.run.time_step is not None:
         return float(case.run.time_step)
     bound = case.run.largest_time_step or math.inf
-    return min(case.run.cfl * case.grid.cell_size / fastest(case, bodies), bound)
+    most = 1.0 if point_spacing(case, bodies.parts.values()) is None else _MOST_CFL_OF_SPRINGS
+    return min(min(case.run.cfl, most) * case.grid.cell_size / fastest(case, bodies), bound)
 
 
 def steps_in_words(case: Case, bodies: Filled) -> str:
     """Return the number of steps: `about` or, where the time step may fall, `at least` so many.
 
-    It falls where waves become faster in what is compressed or burns (an equation of state), or
-    bodies become faster (gravity).
+    It falls where waves become faster in what is compressed or burns (an equation of state),
+    bodies become faster (gravity), or surfaces meet.
     """
     compressible = any(
         case.material[part.material].eos is not None for part in bodies.parts.values()
     )
-    may_fall = case.run.time_step is None and (compressible or any(case.run.gravity))
+    meets = point_spacing(case, bodies.parts.values()) is not None
+    may_fall = case.run.time_step is None and (compressible or any(case.run.gravity) or meets)
     word, step = "at least" if may_fall else "about", time_step(case, bodies)
     steps = f"{word} {math.ceil(case.run.end_time / step):,} steps"
     if case.run.settle is None:
@@ -134,7 +137,8 @@ def memory_bytes(case: Case, bodies: Filled) -> int:
         if kept := case.parts()[part.name].frame == MATERIAL:
             each += 8 * (D + D * D) - taken  # Where it was, and the deformation.
         total += each * part.count
-        if kept and apart is not None:
+        carries = kept or (case.is_rigid(part.name) and case.contact_enabled)
+        if carries and apart is not None:
             total += round(_POINT_BYTES[D] * _surface(case, part) / (apart / ALONG[D]) ** (D - 1))
         for some in part.chunks():
             nodes, strides = _cells(case, some, basis["own_node"])

@@ -132,9 +132,11 @@ def _behind_all_faces(places: Array, drawn: Array, normals: Array, depth: float)
     own, others = np.concatenate([own, others]), np.concatenate([others, own])
     aside = np.einsum("ij,ij->i", normals[own], normals[others]) < _ONE_FACE
     own, others = own[aside], others[aside]
-    lie = np.einsum("ij,ij->i", drawn[others] - places[own], normals[others])
-    shallow = (lie > 0.0) & (lie < (1.0 - 1e-9) * depth)
     moved = places.copy()
-    # Of each point and face beside it the points of this one give the same plane: the last stands.
-    moved[own[shallow]] -= (depth - lie[shallow])[:, None] * normals[others[shallow]]
+    for _ in range(places.shape[1] - 1):  # Beside a corner there are two other faces.
+        lie = np.einsum("ij,ij->i", drawn[others] - moved[own], normals[others])
+        shallow = np.flatnonzero((lie > 0.0) & (lie < (1.0 - 1e-9) * depth))
+        # Of each point the last stands: the one that it lies least behind.
+        shallow = shallow[np.argsort(-lie[shallow], kind="stable")]
+        moved[own[shallow]] -= (depth - lie[shallow])[:, None] * normals[others[shallow]]
     return moved
