@@ -18,7 +18,7 @@ from fake_core import pressure, von_mises
 from mpm3dpp import Simulation, load_case
 from mpm3dpp.fill.build import build
 from mpm3dpp.io import frame_of
-from mpm3dpp.run.summary import memory_bytes, process_bytes
+from mpm3dpp.run.memory import memory_bytes, process_bytes
 
 MIB = 2**20
 LONG = 60.0  # [s] Until a process that hangs is given up.

@@ -13,7 +13,8 @@ from mpm3dpp import Body, Case, Grains, Grid, Material, Run, Simulation, load_ca
 from mpm3dpp.base.time_functions import TimeFunction
 from mpm3dpp.case.grid import GridCoarsening
 from mpm3dpp.fill.build import build
-from mpm3dpp.run.summary import echo, memory_bytes
+from mpm3dpp.run.memory import memory_bytes
+from mpm3dpp.run.summary import echo
 from mpm3dpp.run.summary_conditions import coarsenings, in_words
 
 CASE = """

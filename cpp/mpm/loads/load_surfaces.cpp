@@ -24,12 +24,14 @@ auto by_own_functions(const TileGrid<D>& grid, const ParticlePool<D>& pool, cons
                       const CellRange<D>& cell, std::uint32_t row, const Vec<double, D>& arm,
                       const B& basis) {
   std::array<AxisWeights<double, B::nodes>, D> w;
-  const Vec<double, D> d = (1.0 / grid.cell_size) * arm;
-  Vec<double, D> xi, place;
+  Vec<double, D> xi, d, place;
   for (int a = 0; a < D; ++a) {
     const auto k = static_cast<std::size_t>(a);
     xi[a] = local_coordinate(grid.in_cells(pool.listed(a)[row], a), cell.cell[k]);
     w[k] = basis.along(xi[a]);
+    // No further than the nodes beside the cell's own, as may be where a particle is stretched.
+    const double u = xi[a] - B::own_node;
+    d[a] = std::clamp(arm[a] / grid.cell_size, -1.0 - u, 1.0 - u);
     place[a] = grid.origin[a] + grid.cell_size * (cell.cell[k] + xi[a] - B::own_node + d[a]);
   }
   const Vec<double, D> b = second_order_of(basis, xi, d);

@@ -76,10 +76,16 @@ void for_each_node_at(const Step<D>& step, const Vec<double, D>& particle, const
 template <int D, class F>
 void for_each_loaded_node(const Step<D>& step, const Vec<double, D>& particle,
                           const Vec<double, D>& middle, F&& f) {
-  if (step.spline || step.box > 0.0)
-    for_each_node_at(step, particle, middle, middle, false, f);
-  else
+  if (step.spline || step.box > 0.0) {
+    Vec<double, D> d;  // no further than the nodes beside that near to the particle
+    for (int k = 0; k < D; ++k) {
+      const double u = particle[k] / step.h - std::floor(particle[k] / step.h + 0.5);
+      d[k] = step.h * std::clamp(middle[k] / step.h, -1.0 - u, 1.0 - u);
+    }
+    for_each_node_at(step, particle, d, d, false, f);
+  } else {
     for_each_hat_node(step, particle, middle, f);
+  }
 }
 
 /// f_i += sum N_i(x) f over the pieces, f = -p a or t |a|, of p and t the means over the step; x is

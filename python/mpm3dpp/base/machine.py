@@ -54,7 +54,7 @@ MEMORY = min(_memories())
 """That a process may have on this machine [bytes]."""
 PARTICLE_BYTES_WITH_GRID = 150
 """That a particle needs about, its share of the grid included, before there is a case to count the
-nodes of; `echo.memory_bytes` does so, and counts particles without them."""
+nodes of; `run.memory.memory_bytes` does so, and counts particles without them."""
 BODY_BYTES = 4000
 """That a body of a particle or two needs at least, with its columns, lists and blocks of nodes."""
 MOST_PARTICLES = MEMORY / PARTICLE_BYTES_WITH_GRID
