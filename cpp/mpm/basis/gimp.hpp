@@ -40,7 +40,8 @@ struct Gimp {
     const double a = std::abs(away), s = away > 0.0 ? xi - 0.5 : 0.5 - xi;
     const auto slope = [&](double at) { return std::clamp(0.5 / l * (at + l), 0.0, 1.0); };
     double N = 0.0;
-    for (double at = s; at > -l; at -= 2.0 * a) N += 2.0 * a * slope(at);
+    const int rows = static_cast<int>(std::ceil((s + l) / (2.0 * a)));
+    for (int k = 0; k < rows; ++k) N += 2.0 * a * slope(s - 2.0 * a * k);
     const double over = std::max(l - std::abs(s), 0.0);
     return part * (N - (std::max(s, 0.0) + 0.25 / l * over * over) - a * slope(s));
   }

@@ -37,8 +37,11 @@ double second_order_of(const Step<D>& step, double at, double out, double part) 
   const double outwards = out > 0.0 ? 1.0 : -1.0, own = std::floor(at + 0.5);
   const auto S = [&](double x, double side) { return step.S(x - own - side); };
   double W = 0.0;
-  for (double x = at; std::abs(x - own - outwards) < 2.0; x -= 2.0 * out)
+  double x = at;
+  while (std::abs(x - own - outwards) < 2.0) {
     W += 2.0 * out * S(x, outwards).dN;
+    x -= 2.0 * out;
+  }
   const double b = W - S(at, outwards).N - out * S(at, outwards).dN;
   const double l = step.spline ? 0.5 : step.box, least = std::min(S(at, 1.0).N, S(at, -1.0).N);
   const double most = std::abs(out) * std::sqrt(std::max(least, 0.0) / l);
