@@ -11,7 +11,7 @@ import pytest
 from cases import BASES
 from mpm3dpp import Body, Case, Grains, Grid, Material, Run, Simulation, load_case, shapes
 from mpm3dpp.base.time_functions import TimeFunction
-from mpm3dpp.case.grid import GridCoarsening
+from mpm3dpp.case.grid import GridBox, GridCoarsening
 from mpm3dpp.fill.build import build
 from mpm3dpp.run.memory import memory_bytes
 from mpm3dpp.run.summary import echo
@@ -151,3 +151,18 @@ def test_coarsenings_of_a_box_and_without() -> None:
     assert coarsenings(None, coarsening) == 4
     assert coarsenings((32, 64), coarsening) == 4
     assert coarsenings((6, 64), coarsening) == 1
+
+
+def test_what_contact_with_walls_alone_and_a_longer_step_come_to() -> None:
+    box = shapes.Box(lower=[1e-3, 1e-3], upper=[5e-3, 5e-3])
+    walls = GridBox(lower=[0, 0], upper=[10e-3, 10e-3], walls="contact")
+    case = Case(
+        grid=Grid(dimension=2, cell_size=1e-3, box=walls),
+        run=Run(end_time=1e-3, cfl=0.9),
+        material={"soft": SOFT},
+        body={"block": Body(material="soft", shape=box, frame="material")},
+        contact={"restitution": 0.4},
+    )
+    lines = echo(case, build(case))
+    assert "contact: of surfaces with walls, restitution 0.4" in lines
+    assert "cfl 0.9 (0.6 with contact between surfaces), " in lines

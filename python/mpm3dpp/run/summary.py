@@ -40,8 +40,12 @@ def time_step(case: Case, bodies: Filled) -> float:
     if case.run.time_step is not None:
         return float(case.run.time_step)
     bound = case.run.largest_time_step or math.inf
-    most = 1.0 if point_spacing(case, bodies.parts.values()) is None else _MOST_CFL_OF_SPRINGS
-    return min(min(case.run.cfl, most) * case.grid.cell_size / fastest(case, bodies), bound)
+    return min(_cfl(case, bodies) * case.grid.cell_size / fastest(case, bodies), bound)
+
+
+def _cfl(case: Case, bodies: Filled) -> float:
+    touches = point_spacing(case, bodies.parts.values()) is not None
+    return min(case.run.cfl, _MOST_CFL_OF_SPRINGS) if touches else case.run.cfl
 
 
 def steps_in_words(case: Case, bodies: Filled) -> str:
@@ -62,8 +66,12 @@ def steps_in_words(case: Case, bodies: Filled) -> str:
     return f"up to {math.ceil(case.run.settle.longest / step):,} steps to settle, then {steps}"
 
 
-def _step_rule(case: Case) -> str:
-    return f"cfl {case.run.cfl:g}, " if case.run.time_step is None else ""
+def _step_rule(case: Case, bodies: Filled) -> str:
+    if case.run.time_step is not None:
+        return ""
+    most = _cfl(case, bodies)
+    held = f" ({most:g} with contact between surfaces)" if most < case.run.cfl else ""
+    return f"cfl {case.run.cfl:g}{held}, "
 
 
 def frame_count(case: Case, bodies: Filled) -> int:
@@ -198,6 +206,8 @@ def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
         if in_body(case):
             contact = f"between surfaces, restitution {case.contact.restitution:g}"
         contact += f", friction {case.contact.friction:g}"
+    elif point_spacing(case, bodies.parts.values()) is not None:
+        contact = f"of surfaces with walls, restitution {case.contact.restitution:g}"
     lines += [
         f"total: {particles:,} particles, mass {mass:.6g} kg{per_metre}, "
         f"memory about {process_bytes(core, frames) / 2**20:,.0f} MiB, of which the core "
@@ -207,7 +217,7 @@ def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
         f"{bounds}, {case.grid.basis} basis",
         *condition_lines(case),
         f"contact: {contact}",
-        f"time: {case.run.scheme}, {case.run.transfer.word}, {_step_rule(case)}"
+        f"time: {case.run.scheme}, {case.run.transfer.word}, {_step_rule(case, bodies)}"
         f"end {case.run.end_time:.6g} s, "
         f"step about {time_step(case, bodies):.3g} s, "
         f"{steps_in_words(case, bodies)}, {frames_in_words(case, bodies)}",
