@@ -49,8 +49,7 @@ class SurfaceComparison {
     }
   };
   void check(const Difference& difference, double least = 0.0) {
-    CHECK_CLOSE(difference.most, 0.0,
-                rounding() * tolerance * std::max(difference.largest, least));
+    CHECK_CLOSE(difference.most, 0.0, rounding() * tolerance * std::max(difference.largest, least));
   }
   /// Where bodies hardly part, restitution takes (1 - e^2) m* u_n / dt: u_n is a small difference.
   double rounding() const {
