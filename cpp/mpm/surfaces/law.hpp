@@ -21,8 +21,8 @@
 // Elastic bodies without any loss that slide flutter: constant friction drives waves along their
 // surfaces (Adams 1995). So a point that slides has a dashpot along the normal besides, a part of
 // what would let no wave back, Z = rho c of the start (after Oden & Martins 1985):
-//   f = k o + eta do/dt, .01 k o at least,   eta = 0.2 A / (1 / Z_a + 1 / Z_b),   0.4 A Z at a
-//   face.          (S6)
+//   f = k o + eta do/dt, .01 k o at least,   eta = 0.2 A / (1 / Z_a + 1 / Z_b),             (S6)
+// at a face 0.4 A Z.
 #include <algorithm>
 #include <cmath>
 

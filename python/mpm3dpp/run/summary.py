@@ -32,7 +32,7 @@ _FRAME_BYTES = (
     4 * 14
 )  # Of a particle, without further fields: position, velocity, stress, two more.
 
-_MOST_CFL_OF_SPRINGS = 0.6  # of steps of contact between surfaces (decision 0071)
+_MOST_CFL_OF_SPRINGS = 0.6  # As cpp/mpm/run/time_step.cpp has it (decision 0071).
 
 
 def time_step(case: Case, bodies: Filled) -> float:
@@ -43,9 +43,15 @@ def time_step(case: Case, bodies: Filled) -> float:
     return min(_cfl(case, bodies) * case.grid.cell_size / fastest(case, bodies), bound)
 
 
+def _surfaces_touch(case: Case, bodies: Filled) -> bool:
+    """Return whether bodies on nodes of their own touch each other, themselves or walls."""
+    return point_spacing(case, bodies.parts.values()) is not None
+
+
 def _cfl(case: Case, bodies: Filled) -> float:
-    touches = point_spacing(case, bodies.parts.values()) is not None
-    return min(case.run.cfl, _MOST_CFL_OF_SPRINGS) if touches else case.run.cfl
+    """Return `run.cfl`, or what contact between surfaces bears of it."""
+    most = _MOST_CFL_OF_SPRINGS if _surfaces_touch(case, bodies) else math.inf
+    return min(case.run.cfl, most)
 
 
 def steps_in_words(case: Case, bodies: Filled) -> str:
@@ -57,7 +63,7 @@ def steps_in_words(case: Case, bodies: Filled) -> str:
     compressible = any(
         case.material[part.material].eos is not None for part in bodies.parts.values()
     )
-    meets = point_spacing(case, bodies.parts.values()) is not None
+    meets = _surfaces_touch(case, bodies)
     may_fall = case.run.time_step is None and (compressible or any(case.run.gravity) or meets)
     word, step = "at least" if may_fall else "about", time_step(case, bodies)
     steps = f"{word} {math.ceil(case.run.end_time / step):,} steps"
@@ -206,7 +212,7 @@ def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
         if in_body(case):
             contact = f"between surfaces, restitution {case.contact.restitution:g}"
         contact += f", friction {case.contact.friction:g}"
-    elif point_spacing(case, bodies.parts.values()) is not None:
+    elif _surfaces_touch(case, bodies):
         contact = f"of surfaces with walls, restitution {case.contact.restitution:g}"
     lines += [
         f"total: {particles:,} particles, mass {mass:.6g} kg{per_metre}, "
