@@ -107,10 +107,18 @@ struct SurfaceTouch {
   Whom whom;
   std::vector<Felt<D>> felt{};
   double z = 0.0, b = 0.0;            // height over its points or over the face, set back by [m]
-  double k = 0.0;                     // (S1) [N/m]
+  double k = 0.0, w = 0.0;            // (S1) [N/m]; (S4) [m]
+  Vec<double, D> slope{};             // do/dx of p, backwards: where it is pushed
   Vec<double, D> push{}, rub{};       // on p, at it and at the place of contact [N]
   Vec<double, D> place{};             // of contact [m]
   bool rubs = false, slides = false;  // has friction; at its limit
+};
+
+/// What a touch remembers from its beginning on: s of (S2) and w of (S4) [m].
+template <int D>
+struct SurfaceMemory {
+  Vec<double, D> s = Vec<double, D>::zero();
+  double w = 0.0;
 };
 
 /// Friction and restitution of two bodies, and whether they are bonded.

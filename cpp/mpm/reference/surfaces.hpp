@@ -33,7 +33,7 @@ void for_each_mirror(const Step<D>& step, F&& f) {
 template <int D>
 struct Surfaces {
   const Step<D>& step;
-  double e = 0.0, w = 0.0;  // spacing of points; way over which springs begin [m]
+  double e = 0.0;  // spacing of points [m]
   std::vector<SurfaceBody<D>> bodies{};
   std::map<std::pair<std::size_t, std::size_t>, SurfaceLaw> laws{};  // the lower number first
   SurfaceLaw law{};                                                  // of all others, and of faces
@@ -41,7 +41,8 @@ struct Surfaces {
   using Of = std::tuple<std::size_t, std::size_t, Whom>;             // body, point, whom it touches
   std::map<Of, double> set_back{};                                   // b [m]
   std::set<Of> bonded{};                                             // who does not push
-  std::map<Of, Vec<double, D>> slips{};                              // s [m]
+  std::map<Of, SurfaceMemory<D>> kept{};                             // of who touches
+  std::map<std::pair<Whom, Whom>, double> approaches{};              // so far, fastest [m/s]
   Height<D> height{e};
 
   SurfaceLaw law_of(std::size_t a, std::size_t b) const {
@@ -49,19 +50,19 @@ struct Surfaces {
     return found != laws.end() ? found->second : law;
   }
 
-  /// Before the first step: w is what the fastest particles go in the longest step of a wave over a
-  /// cell, h / 20 at most; and what lies in others is set back, so that springs just begin.
+  /// Before the first step: what lies in others is set back, so that springs just begin.
   void start() {
-    double fastest = 0.0, c = std::numeric_limits<double>::infinity();
-    for (const SurfaceBody<D>& b : bodies) {
-      for (const Particle<D>& p : b.body().particles) fastest = std::max(fastest, norm(p.v));
-      if (b.deforms()) c = std::min(c, 1.0 / std::sqrt(b.compliance() * b.body().material.density));
+    for (SurfaceBody<D>& b : bodies) {
+      b.at_edges = hosts_at_edges(b.points);
+      for (ContactPoint<D>& c : b.points) b.place(c);
     }
-    w = step.h * std::min(fastest / c, 0.05);
     for_each_touch([&](const SurfaceTouch<D>& t) {
-      if (overlap(t) > -0.5 * w) set_back[{t.body, t.point, t.whom}] = overlap(t) + 0.5 * w;
+      if (overlap(t) > 0.0) set_back[{t.body, t.point, t.whom}] = overlap(t);
     });
-    for (SurfaceBody<D>& b : bodies) b.at_edges = hosts_at_edges(b.points);
+    for_each_near_touch([&](SurfaceTouch<D> t) {
+      const double begun = overlap(t) + 0.5 * onset(t, approach(t, slip_velocity(t)));
+      if (begun > 0.0) set_back[{t.body, t.point, t.whom}] += begun;
+    });
   }
 
   /// At the end of a step: what acts in the next.
@@ -71,18 +72,50 @@ struct Surfaces {
       for (ContactPoint<D>& c : b.points) b.place(c);
     }
     touches.clear();
-    for_each_touch([&](SurfaceTouch<D> t) {
-      const auto b = set_back.find({t.body, t.point, t.whom});
-      if (b != set_back.end()) t.b = b->second;
-      if (overlap(t) > -0.5 * w) touches.push_back(t);
-    });
-    std::map<Of, Vec<double, D>> kept;
-    for (SurfaceTouch<D>& t : touches) {
-      press(t);
-      rub(t, kept);
+    std::map<Of, SurfaceMemory<D>> now;
+    std::vector<std::pair<std::pair<Whom, Whom>, double>> begun;
+    for_each_near_touch([&](SurfaceTouch<D> t) {
+      const Of of{t.body, t.point, t.whom};
+      const bool begins = !kept.contains(of);
+      const Vec<double, D> u = slip_velocity(t);
+      const double speed = approach(t, u);
+      SurfaceMemory<D> memory;
+      if (begins)
+        memory.w = onset(t, speed);
+      else
+        memory = kept[of];
+      if (!(overlap(t) > -0.5 * memory.w)) return;
+      if (begins) begun.emplace_back(pair_of(t), speed);
+      t.w = memory.w;
+      bodies[t.body].stored_push += press(t);
+      rub(t, u, memory.s);
       give(t);
-    }
-    slips = std::move(kept);  // Who parts forgets.
+      now[of] = memory;
+      touches.push_back(t);
+    });
+    kept = std::move(now);  // Who parts forgets.
+    for (const auto& [pair, speed] : begun) approaches[pair] = std::max(approaches[pair], speed);
+  }
+  static std::pair<Whom, Whom> pair_of(const SurfaceTouch<D>& t) {
+    const auto body = static_cast<Whom>(t.body);
+    return is_face(t.whom) ? std::pair(body, t.whom)
+                           : std::pair(std::min(body, t.whom), std::max(body, t.whom));
+  }
+  /// How fast the surfaces approach each other.
+  double approach(const SurfaceTouch<D>& t, const Vec<double, D>& u) const {
+    return std::max(-dot(t.slope, u), 0.0);
+  }
+  /// w of (S4): what the surfaces approach each other while the slower waves of the two bodies pass
+  /// a cell, as they begin to overlap here or have anywhere before.
+  double onset(const SurfaceTouch<D>& t, double approach) const {
+    const auto waves = [](const SurfaceBody<D>& b) {
+      return 1.0 / std::sqrt(b.compliance() * b.body().material.density);
+    };
+    double c = waves(bodies[t.body]);
+    if (!is_face(t.whom)) c = std::min(c, waves(other(t)));
+    if (const auto before = approaches.find(pair_of(t)); before != approaches.end())
+      approach = std::max(approach, before->second);
+    return step.h * std::min(approach / c, 0.05);
   }
 
   double height_over(Whom face, double x) const {
@@ -100,6 +133,16 @@ struct Surfaces {
   /// o = e - b - e zeta or e / 2 - b - z.
   double overlap(const SurfaceTouch<D>& t) const {
     return (is_face(t.whom) ? 0.5 * e : e) - t.b - t.z;
+  }
+
+  /// f(touch) for those that may have begun, of the widest w.
+  template <class F>
+  void for_each_near_touch(F&& f) {
+    for_each_touch([&](SurfaceTouch<D> t) {
+      const auto b = set_back.find({t.body, t.point, t.whom});
+      if (b != set_back.end()) t.b = b->second;
+      if (overlap(t) > -0.5 * 0.05 * step.h) f(t);
+    });
   }
 
   /// f(touch) for every point and every face that pushes back and every other body near it.
@@ -150,7 +193,7 @@ struct Surfaces {
 
   /// What is stored over k: of the force o, which begins softly from o = -w / 2 to w / 2, (S4).
   template <class T>
-  T stored(const T& o) const {
+  static T stored(const T& o, double w) {
     if (std::real(o) >= 0.5 * w) return 0.5 * o * o + w * w / 24.0;
     const T begun = o + 0.5 * w;
     return begun * begun * begun / (6.0 * w);
@@ -162,18 +205,19 @@ struct Surfaces {
     if (is_face(t.whom)) {
       const T& x = p[axis_of(t.whom)];
       const T z = side_of(t.whom) == 0 ? x : height_over(t.whom, 0.0) - x;
-      return t.k * stored<T>(0.5 * e - t.b - z);
+      return t.k * stored<T>(0.5 * e - t.b - z, t.w);
     }
     T S(0.0);
     for (std::size_t j = 0; j < q.size(); ++j)
       S += other(t).points[t.felt[j].q].A / std::pow(e, D - 1) *
            height.weight(square(q[j], t.felt[j].mirror.place(p)));
-    return t.k * stored<T>(e - t.b - e * height.zeta(S));
+    return t.k * stored<T>(e - t.b - e * height.zeta(S), t.w);
   }
 
   /// - dE/dx to p and to all that it feels. Of E(x + i d) the imaginary part is d dE/dx, exact with
   /// a d of which the square is nothing (Squire & Trapp 1998).
-  void press(SurfaceTouch<D>& t) {
+  /// Returns E.
+  double press(SurfaceTouch<D>& t) {
     using Complex = std::complex<double>;
     const auto complex = [](const Vec<double, D>& x) {
       Vec<Complex, D> z;
@@ -196,7 +240,7 @@ struct Surfaces {
     };
     t.push = force_at(p);
     for (std::size_t j = 0; j < q.size(); ++j) t.felt[j].push = force_at(q[j]);
-    bodies[t.body].stored_push += std::real(energy(t, p, q));
+    return std::real(energy(t, p, q));
   }
 
   /// The dashpot (S6) of a point that slides with u [m/s]: all that presses by so much more.
@@ -207,9 +251,13 @@ struct Surfaces {
     const double A = point(t).A, of_a = admittance(bodies[t.body]), tiny = 1e-30 * e;
     const double eta = is_face(t.whom) ? 0.4 * A / of_a : 0.2 * A / (of_a + admittance(other(t)));
     // k o, as it begins, and do/dt.
-    const double spring = t.k * std::imag(stored(std::complex<double>(overlap(t), tiny))) / tiny;
+    const double spring =
+        t.k * std::imag(stored(std::complex<double>(overlap(t), tiny), t.w)) / tiny;
     const double faster = -dot(t.push, u) / spring;
-    const double more = std::max(1.0 + eta * faster / spring, 0.01);
+    const Vec<double, D> n = normalised(t.push);
+    const double steep = std::abs(dot(u, n)) / norm(along(u, n));
+    const double b = std::min(std::max(1.5 - 5.0 * steep, 0.0), 1.0);
+    const double more = std::max(1.0 + b * eta * faster / spring, 0.01);
     t.push = more * t.push;
     for (Felt<D>& felt : t.felt) felt.push = more * felt.push;
   }
@@ -231,28 +279,36 @@ struct Surfaces {
     return law_of(t.body, static_cast<std::size_t>(t.whom)).mu;
   }
 
-  /// (S2) at x_0 = x_p - z n / 2, on a face its foot: of the memory s what it has along the normal
-  /// by now is turned into the plane, so that it keeps its length.
-  void rub(SurfaceTouch<D>& t, std::map<Of, Vec<double, D>>& kept) {
-    const double f = norm(t.push), mu = friction_of(t), k_t = 0.8 * t.k;
-    const Vec<double, D> n = normalised(t.push);
+  /// How the surfaces of a touch move on each other at x_0 = x_p - z n / 2, on a face its foot; by
+  /// the way where a spring pushes that has begun long before.
+  Vec<double, D> slip_velocity(SurfaceTouch<D>& t) {
+    t.w = step.h;
+    press(t);
+    const double begun = overlap(t) + 0.5 * t.w;
+    t.slope = (2.0 * t.w / (t.k * begun * begun)) * t.push;
+    const Vec<double, D> n = normalised(t.slope);
     t.place = point(t).x - (is_face(t.whom) ? 1.0 : 0.5) * t.z * n;
-    t.rub = Vec<double, D>::zero();
-    if (!(mu > 0.0 && f > 0.0)) return;
     Vec<double, D> u = bodies[t.body].velocity(point(t), t.place);
     for (const Felt<D>& felt : t.felt)
       u -= felt.share * felt.mirror.vector(
                             other(t).velocity(other(t).points[felt.q], felt.mirror.place(t.place)));
-    Vec<double, D> s = Vec<double, D>::zero();
-    if (const auto before = slips.find({t.body, t.point, t.whom}); before != slips.end())
-      s = norm(before->second) * normalised(along(before->second, n));
+    return u;
+  }
+
+  /// (S2) at x_0: of the memory s what it has along the normal
+  /// by now is turned into the plane, so that it keeps its length.
+  void rub(SurfaceTouch<D>& t, const Vec<double, D>& u, Vec<double, D>& s) {
+    const double f = norm(t.push), mu = friction_of(t), k_t = 0.8 * t.k;
+    const Vec<double, D> n = normalised(t.push);
+    t.rub = Vec<double, D>::zero();
+    if (!(mu > 0.0 && f > 0.0)) return;
+    if (norm(s) > 0.0) s = norm(s) * normalised(along(s, n));
     s += step.dt * along(u, n);
     t.slides = norm(s) > mu * f / k_t;
     if (t.slides) {
       damp(t, u);
       s = std::min(norm(s), mu * norm(t.push) / k_t) * normalised(s);
     }
-    kept[{t.body, t.point, t.whom}] = s;
     t.rubs = true;
     t.rub = -k_t * s;
     bodies[t.body].stored_rub += 0.5 * k_t * dot(s, s);

@@ -95,7 +95,7 @@ std::size_t bytes_of_surfaces(const Surfaces<D>& surfaces) {
   const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   std::size_t parts = size(surfaces.parts);
   for (const SurfacePart<D>& part : surfaces.parts)
-    parts += size(part.touches) + size(part.slips) + size(part.new_slips) + size(part.near_of) +
+    parts += size(part.touches) + size(part.kept) + size(part.kept_next) + size(part.near_of) +
              size(part.awake_of) + size(part.awake) + size(part.near) + size(part.felt);
   return parts + size(surfaces.part_of) + size(surfaces.hosts) + size(surfaces.points) +
          size(surfaces.places) + size(surfaces.bonds) + size(surfaces.on_bodies) +

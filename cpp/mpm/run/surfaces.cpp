@@ -5,10 +5,10 @@
 
 #include "mpm/comm/letters.hpp"
 #include "mpm/surfaces/bonds.hpp"
-#include "mpm/surfaces/law.hpp"
 #include "mpm/surfaces/near_points.hpp"
 #include "mpm/surfaces/overlaps.hpp"
 #include "mpm/surfaces/parts.hpp"
+#include "mpm/surfaces/press.hpp"
 
 namespace mpm {
 
@@ -43,32 +43,14 @@ void add_surface(Simulation<D>& simulation, int number, const ContactPointsGiven
   }
 }
 
-namespace {
-
-/// The way over which springs begin, w of law.hpp [m].
-template <int D>
-double onset_of(const Domain<D>& domain) {
-  double fastest = 0.0, wave = std::numeric_limits<double>::infinity();
-  domain.for_each_particle([&](const ParticlePool<D>& pool, std::uint32_t row) {
-    const Vector3 v = velocity_in_space(pool, row);
-    fastest = std::max(fastest, norm(v));
-  });
-  for (const Body<D>& body : domain.bodies)
-    if (body.deforms()) wave = std::min(wave, std::sqrt(body.stiffness / body.initial_density));
-  fastest = all_max(*domain.grid.partition.comm, fastest);
-  return domain.grid.cell_size * std::min(fastest / wave, most_onset);
-}
-
-}  // namespace
-
 template <int D>
 void start_surfaces(Domain<D>& domain) {
   if (domain.surfaces.given.empty()) return;
   start_parts(domain);
-  domain.surfaces.onset = onset_of(domain);
   if (domain.surfaces.meet && bonds(domain.contact_settings)) add_bonds(domain);
   if (domain.surfaces.meet) find_near_points(domain);
   set_back_overlaps(domain);
+  set_back_onsets(domain);
   domain.surfaces.given = {};
   domain.surfaces.given_of = {};
 }
@@ -99,8 +81,8 @@ void write_part(Letter& letter, std::size_t number, const SurfacePart<D>& part) 
   write(letter, part.of_faces);
   write(letter, part.moment_of_faces);
   write(letter, part.at_faces);
-  write(letter, part.slips.size());
-  write_all<KeptOfContact<Vec<double, D>>>(letter, part.slips);
+  write(letter, part.kept.size());
+  write_all<KeptOfContact<MemoryOfTouch<D>>>(letter, part.kept);
 }
 template <int D>
 void read_part(Reader& reader, Surfaces<D>& surfaces) {
@@ -108,8 +90,8 @@ void read_part(Reader& reader, Surfaces<D>& surfaces) {
   part.of_faces = reader.read<FaceImpulses<D>>();
   part.moment_of_faces = reader.read<Vector3>();
   part.at_faces = reader.read<bool>();
-  part.slips.resize(reader.read<std::size_t>());
-  for (auto& slip : part.slips) slip = reader.read<KeptOfContact<Vec<double, D>>>();
+  part.kept.resize(reader.read<std::size_t>());
+  for (auto& one : part.kept) one = reader.read<KeptOfContact<MemoryOfTouch<D>>>();
 }
 
 /// The state of the surfaces of all ranks, to the first.
@@ -189,6 +171,10 @@ void check_state(const Domain<D>& domain, Surfaces<D>& surfaces) {
     check(is_body(pair.a) &&
           (is_body(pair.b) ? pair.a < pair.b : pair.b >= opposite_face(D - 1, 1)) &&
           is_finite(pair.on_first) && is_finite(pair.push) && std::isfinite(pair.rubbed));
+  check(std::ranges::is_sorted(surfaces.approaches, std::less<>{}));
+  for (const Approach& one : surfaces.approaches)
+    check(is_body(one.a) && (is_body(one.b) || one.b >= opposite_face(D - 1, 1)) &&
+          one.speed >= 0.0 && std::isfinite(one.speed));
   for (SurfacePart<D>& part : surfaces.parts) {
     bool finite = is_finite(part.moment_of_faces);
     part.of_faces.for_each([&](double x) { finite = finite && std::isfinite(x); });
@@ -202,11 +188,14 @@ void exchange_state(const Domain<D>& domain, Surfaces<D>& surfaces, StateStream&
   exchange_kept(surfaces.set_back, stream, surfaces.points.size(),
                 [](double x) { return std::isfinite(x); });
   for (SurfacePart<D>& part : surfaces.parts) {
-    exchange_kept(part.slips, stream, surfaces.points.size(), is_finite<D>);
+    exchange_kept(part.kept, stream, surfaces.points.size(), [](const MemoryOfTouch<D>& one) {
+      return is_finite(one.slip) && one.onset >= 0.0 && std::isfinite(one.onset);
+    });
     stream(part.of_faces, part.moment_of_faces, part.at_faces);
   }
   stream.vector(surfaces.on_hosts);
   stream.vector(surfaces.between);
+  stream.vector(surfaces.approaches);
   stream.vector(surfaces.on_bodies);
   for (const SurfacePart<D>& part : surfaces.parts)
     if (part.as_one)

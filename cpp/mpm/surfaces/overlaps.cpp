@@ -10,6 +10,12 @@
 namespace mpm {
 namespace {
 
+/// Springs may begin from this overlap on, (S4).
+template <int D>
+double least_overlap(const Domain<D>& domain) {
+  return -0.5 * most_onset * domain.grid.cell_size;
+}
+
 /// The faces of the box that a point overlaps, by o = e / 2 - z: f(opposite, o, normal).
 template <int D, class F>
 void for_each_face(const Domain<D>& domain, const Vec<double, D>& place, F&& f) {
@@ -22,7 +28,7 @@ void for_each_face(const Domain<D>& domain, const Vec<double, D>& place, F&& f) 
       const double length = grid.cell_size * grid.walls.cells[static_cast<std::size_t>(axis)];
       const double height = side == 0 ? x : length - x;
       const double overlap = 0.5 * domain.surfaces.spacing - height;
-      if (!(overlap > -0.5 * domain.surfaces.onset)) continue;
+      if (!(overlap > least_overlap(domain))) continue;
       Vec<double, D> normal = Vec<double, D>::zero();
       normal[axis] = side == 0 ? 1.0 : -1.0;
       f(opposite_face(axis, side), overlap, normal);
@@ -109,7 +115,7 @@ void add_touch_of_body(const Domain<D>& domain, SurfacePart<D>& part, const Near
   touch.point = near.point;
   touch.opposite = near.body;
   touch.overlap = e - e * in.zeta - set_back;
-  if (!(touch.overlap > -0.5 * domain.surfaces.onset)) return;
+  if (!(touch.overlap > least_overlap(domain))) return;
   touch.stiffness = stiffness_of_point(surfaces.points[near.point].area, domain.grid.cell_size,
                                        1.0 / domain.body_at(part.body).stiffness,
                                        1.0 / domain.body_at(near.body).stiffness);
@@ -155,10 +161,10 @@ void for_each_body(const Domain<D>& domain, const SurfacePart<D>& part, std::uin
   }
 }
 
-/// The sum of weights at which a spring may begin.
+/// The sum of weights at that.
 template <int D>
-double least_sum(const Surfaces<D>& surfaces) {
-  return SurfacePoint<D>::sum_at(1.0 + 0.5 * surfaces.onset / surfaces.spacing);
+double least_sum(const Domain<D>& domain) {
+  return SurfacePoint<D>::sum_at(1.0 - least_overlap(domain) / domain.surfaces.spacing);
 }
 
 }  // namespace
@@ -168,7 +174,7 @@ void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part) {
   const Surfaces<D>& surfaces = domain.surfaces;
   part.touches.clear();
   part.felt.clear();
-  const double least = least_sum(surfaces);
+  const double least = least_sum(domain);
   std::size_t next = 0;
   for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
     // Bodies that do not deform are held by faces as a whole.
@@ -176,7 +182,7 @@ void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part) {
       for_each_face(domain, surfaces.places[c],
                     [&](Opposite face, double overlap, const Vec<double, D>& normal) {
                       const double back = set_back_of(surfaces, c, face);
-                      if (overlap - back > -0.5 * domain.surfaces.onset)
+                      if (overlap - back > least_overlap(domain))
                         part.touches.push_back(
                             touch_of_face(domain, part.body, c, face, overlap, back, normal));
                     });
@@ -199,14 +205,15 @@ template <int D>
 void set_back_overlaps(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
   SetBack& told = domain.contact.set_back;
-  const double least = least_sum(surfaces);
+  const double least = least_sum(domain);
   const double seen = 1e-6 * domain.grid.cell_size;  // of what is drawn into each other
   for (SurfacePart<D>& part : surfaces.parts) {
     if (part.foreign) continue;
     std::size_t next = 0;
     for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
       const auto set_back = [&](Opposite opposite, double overlap) {
-        surfaces.set_back.push_back({c, opposite, overlap + 0.5 * surfaces.onset});
+        if (!(overlap > 0.0)) return;
+        surfaces.set_back.push_back({c, opposite, overlap});
         told.most = std::max(told.most, overlap);
         if (overlap > seen) ++told.particles;
       };

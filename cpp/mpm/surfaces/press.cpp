@@ -1,5 +1,6 @@
 #include "mpm/surfaces/press.hpp"
 
+#include "mpm/surfaces/approaches.hpp"
 #include "mpm/surfaces/as_one.hpp"
 #include "mpm/surfaces/law.hpp"
 #include "mpm/surfaces/mirrored.hpp"
@@ -7,13 +8,13 @@
 namespace mpm {
 namespace {
 
-/// What the spring of friction has slipped by so far; it is forgotten when a point parts.
+/// What a touch remembers; null if it begins.
 template <int D>
-Vec<double, D> slip_of(const SurfacePart<D>& part, std::uint32_t point, Opposite opposite) {
-  const KeptOfContact<Vec<double, D>> wanted{point, opposite, {}};
-  const auto at = std::ranges::lower_bound(part.slips, wanted, std::less<>{});
-  const bool found = at != part.slips.end() && !(wanted < *at);
-  return found ? at->value : Vec<double, D>::zero();
+const MemoryOfTouch<D>* memory_of(const SurfacePart<D>& part, const SurfaceTouch<D>& touch) {
+  const KeptOfContact<MemoryOfTouch<D>> wanted{touch.point, touch.opposite, {}};
+  const auto at = std::ranges::lower_bound(part.kept, wanted, std::less<>{});
+  const bool found = at != part.kept.end() && !(wanted < *at);
+  return found ? &at->value : nullptr;
 }
 
 template <int D>
@@ -55,6 +56,29 @@ Vec<double, D> slip_velocity(const Domain<D>& domain, const SurfacePart<D>& part
   return u;
 }
 
+/// How fast waves are in a body at the start [m/s]; without end in one that does not deform.
+template <int D>
+double waves_of(const Domain<D>& domain, int body) {
+  const Body<D>& of = domain.body_at(body);
+  return std::sqrt(of.stiffness / of.initial_density);
+}
+/// The way over which the spring of a touch begins at which the surfaces approach each other so
+/// fast, w of (S4).
+template <int D>
+double onset_of(const Domain<D>& domain, const SurfacePart<D>& part, Opposite opposite,
+                double approach) {
+  double waves = waves_of(domain, part.body);
+  if (!is_face(opposite)) waves = std::min(waves, waves_of(domain, opposite));
+  const double fastest = std::max(approach, fastest_approach(domain.surfaces, part.body, opposite));
+  return domain.grid.cell_size * std::min(fastest / waves, most_onset);
+}
+
+/// How fast the surfaces of a touch approach each other that slip with u on each other [m/s].
+template <int D>
+double approach_of(const SurfaceTouch<D>& touch, const Vec<double, D>& u) {
+  return std::max(-dot(touch.slope, u), 0.0);
+}
+
 /// What waves meet in a body, 1 / (rho c) of the start [m^2 s/kg].
 template <int D>
 double admittance_of(const Domain<D>& domain, int body) {
@@ -72,20 +96,20 @@ double damping_of(const Domain<D>& domain, const SurfacePart<D>& part,
              : damping_of_point(area, own, admittance_of(domain, touch.opposite));
 }
 
-/// The force of friction of a touch, and of the dashpot along the normal if it slides.
+/// The force of friction of a touch of which the surfaces slip with u on each other, and of the
+/// dashpot along the normal if it slides; `before`: the slip so far.
 template <int D>
 Friction<D> slide(const Domain<D>& domain, const SurfacePart<D>& part, SurfaceTouch<D>& touch,
-                  double coefficient) {
+                  const Vec<double, D>& before, const Vec<double, D>& u, double coefficient) {
   const double push = norm(touch.push);
-  const Vec<double, D> normal = (1.0 / push) * touch.push, u = slip_velocity(domain, part, touch),
-                       way = domain.time_step * u,
-                       before = slip_of(part, touch.point, touch.opposite);
+  const Vec<double, D> normal = (1.0 / push) * touch.push, way = domain.time_step * u;
   const auto pushed_with = [&](double force) {
     return rub(before, normal, way, touch.stiffness, coefficient, force);
   };
   const Friction<D> friction = pushed_with(push);
   if (!friction.slides) return friction;
-  const double damping = damping_of(domain, part, touch);
+  const double along = dot(normal, u), damping = slides_by(along, norm(u - along * normal)) *
+                                                 damping_of(domain, part, touch);
   touch.pushed = std::max(touch.pushed - damping / touch.stiffness * dot(touch.slope, u),
                           least_push * touch.pushed);
   touch.push = touch.stiffness * touch.pushed * touch.slope;
@@ -143,9 +167,38 @@ void find_motions(Domain<D>& domain) {
 }
 
 template <int D>
+void set_back_onsets(Domain<D>& domain) {
+  Surfaces<D>& surfaces = domain.surfaces;
+  for_each_own_part(domain, [&](SurfacePart<D>& part) { find_overlaps(domain, part); });
+  find_motions(domain);
+  const auto less = std::less<KeptOfContact<double>>{};
+  std::vector<KeptOfContact<double>> more;
+  for (SurfacePart<D>& part : surfaces.parts) {
+    if (part.foreign) continue;
+    for (SurfaceTouch<D>& touch : part.touches) {
+      touch.reach = reach_of(domain, touch.point, surfaces.places[touch.point] + touch.arm);
+      const double approach = approach_of(touch, slip_velocity(domain, part, touch)),
+                   begun = touch.overlap + 0.5 * onset_of(domain, part, touch.opposite, approach);
+      if (begun > 0.0) more.push_back({touch.point, touch.opposite, begun});
+    }
+  }
+  std::vector<KeptOfContact<double>>& all = surfaces.set_back;
+  const auto known = static_cast<std::ptrdiff_t>(all.size());
+  for (const KeptOfContact<double>& one : more) {
+    const auto at = std::lower_bound(all.begin(), all.begin() + known, one, less);
+    if (at != all.begin() + known && !less(one, *at))
+      at->value += one.value;
+    else
+      all.push_back(one);
+  }
+  std::ranges::sort(all, less);
+}
+
+template <int D>
 void press_part(Domain<D>& domain, SurfacePart<D>& part) {
   const Surfaces<D>& surfaces = domain.surfaces;
-  part.new_slips.clear();
+  part.kept_next.clear();
+  part.begun.clear();
   part.stored_push = part.stored_rub = 0.0;
   part.of_faces = {};
   part.moment_of_faces = Vector3::zero();
@@ -153,17 +206,28 @@ void press_part(Domain<D>& domain, SurfacePart<D>& part) {
   for (SurfaceTouch<D>& touch : part.touches) {
     touch.reach = reach_of(domain, touch.point, surfaces.places[touch.point] + touch.arm);
     touch.rub = Vec<double, D>::zero();
-    touch.pushed = pushed_by(touch.overlap, surfaces.onset);
-    touch.push = touch.stiffness * touch.pushed * touch.slope;
-    part.stored_push += touch.stiffness * stored_by(touch.overlap, surfaces.onset);
+    touch.pushed = 0.0;
     const double mu = friction_with(domain, part.body, touch.opposite);
+    const MemoryOfTouch<D>* const known = memory_of(part, touch);
+    const Vec<double, D> u =
+        known && mu == 0.0 ? Vec<double, D>::zero() : slip_velocity(domain, part, touch);
+    const double approach = approach_of(touch, u);
+    MemoryOfTouch<D> memory{Vec<double, D>::zero(),
+                            known ? 0.0 : onset_of(domain, part, touch.opposite, approach)};
+    if (known) memory = *known;
+    if (!(touch.overlap > -0.5 * memory.onset)) continue;
+    if (!known) part.begun.emplace_back(touch.opposite, approach);
+    touch.pushed = pushed_by(touch.overlap, memory.onset);
+    touch.push = touch.stiffness * touch.pushed * touch.slope;
+    part.stored_push += touch.stiffness * stored_by(touch.overlap, memory.onset);
     if (mu > 0.0 && norm(touch.push) > 0.0) {
-      const Friction<D> friction = slide(domain, part, touch, mu);
+      const Friction<D> friction = slide(domain, part, touch, memory.slip, u, mu);
       touch.rub = friction.force;
       touch.rubbed = friction.taken;
       part.stored_rub += friction.stored;
-      part.new_slips.push_back({touch.point, touch.opposite, friction.slip});
+      memory.slip = friction.slip;
     }
+    part.kept_next.push_back({touch.point, touch.opposite, memory});
     if (!is_face(touch.opposite)) {
       for (std::uint32_t k = touch.first_felt; k < touch.first_felt + touch.felt; ++k)
         if (part.felt[k].mirrors != 0) add_across_walls(domain, touch, part.felt[k], part);
@@ -176,11 +240,13 @@ void press_part(Domain<D>& domain, SurfacePart<D>& part) {
     part.moment_of_faces +=
         cross(in_space<D>(surfaces.places[touch.point] + touch.arm), in_space<D>(force));
   }
-  std::swap(part.slips, part.new_slips);
+  std::swap(part.kept, part.kept_next);
 }
 
 template void find_motions<2>(Domain<2>&);
 template void find_motions<3>(Domain<3>&);
+template void set_back_onsets<2>(Domain<2>&);
+template void set_back_onsets<3>(Domain<3>&);
 template void press_part<2>(Domain<2>&, SurfacePart<2>&);
 template void press_part<3>(Domain<3>&, SurfacePart<3>&);
 

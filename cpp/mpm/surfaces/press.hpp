@@ -28,6 +28,11 @@ bool rubs(const SurfaceTouch<D>& touch) {
 template <int D>
 void find_motions(Domain<D>& domain);
 
+/// At the start: what approaches something so near that its springs would have begun already is
+/// set back by as much, (S4).
+template <int D>
+void set_back_onsets(Domain<D>& domain);
+
 /// Friction of the touches of a part, with its memory; what is stored in their springs, and what
 /// faces of the box give. Needs find_overlaps() and find_motions().
 template <int D>

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "mpm/layout/tile.hpp"
@@ -49,7 +50,7 @@ constexpr bool is_face(Opposite opposite) { return opposite < 0; }
 constexpr int axis_of_face(Opposite opposite) { return (-1 - opposite) / 2; }
 constexpr int side_of_face(Opposite opposite) { return (-1 - opposite) % 2; }
 
-/// A number or a vector that a contact point keeps of its contact with an opposite.
+/// What a contact point keeps of its contact with an opposite.
 template <class Value>
 struct KeptOfContact {
   std::uint32_t point = 0;
@@ -58,6 +59,24 @@ struct KeptOfContact {
 
   friend bool operator<(const KeptOfContact& x, const KeptOfContact& y) {
     return x.point != y.point ? x.point < y.point : x.opposite < y.opposite;
+  }
+};
+
+/// What a touch remembers of the steps before, until the point parts.
+template <int D>
+struct MemoryOfTouch {
+  Vec<double, D> slip = Vec<double, D>::zero();  // of the spring of friction [m]
+  double onset = 0.0;                            // way over which the other one begins [m]
+};
+
+/// How fast two bodies, or one and a face, have approached each other at a touch, at most.
+struct Approach {
+  int a = 0;
+  Opposite b = 0;
+  double speed = 0.0;  // [m/s]
+
+  friend bool operator<(const Approach& x, const Approach& y) {
+    return x.a != y.a ? x.a < y.a : x.b < y.b;
   }
 };
 
@@ -154,12 +173,13 @@ struct SurfacePart {
   std::uint32_t patch = 0;  // of that body and tile, as long as patches stay what they are
   std::uint32_t first_host = 0, hosts = 0, first_point = 0, points = 0;
 
-  std::vector<SurfaceTouch<D>> touches;                         // by point
-  std::vector<KeptOfContact<Vec<double, D>>> slips, new_slips;  // by point and opposite [m]
-  double stored_push = 0.0, stored_rub = 0.0;                   // in the springs [J]
-  std::vector<NearPoints> near_of;                              // by point and body
-  std::vector<std::uint32_t> near;                              // points
-  std::vector<NearPoints> awake_of;                             // of these what may be felt by now
+  std::vector<SurfaceTouch<D>> touches;                          // by point
+  std::vector<KeptOfContact<MemoryOfTouch<D>>> kept, kept_next;  // by point and opposite
+  std::vector<std::pair<Opposite, double>> begun;                // touches of the step, how fast
+  double stored_push = 0.0, stored_rub = 0.0;                    // in the springs [J]
+  std::vector<NearPoints> near_of;                               // by point and body
+  std::vector<std::uint32_t> near;                               // points
+  std::vector<NearPoints> awake_of;                              // of these what may be felt by now
   std::vector<std::uint32_t> awake;
   std::vector<FeltPoint<D>> felt;  // by touches
   // By the faces of the box in the coming step, with the moment about the origin [N, N m].
@@ -181,7 +201,6 @@ struct Surfaces {
   std::vector<GivenPoint<D>> given;     // until the bodies have rows
   std::vector<std::uint32_t> given_of;  // of each point its place among these, until then
   double spacing = 0.0;  // e: the points of all bodies lie half of it behind their surfaces [m]
-  double onset = 0.0;    // w, way over which springs begin (law.hpp) [m]
   bool meet = false;     // do bodies touch each other by them?
 
   std::vector<SurfacePart<D>> parts;  // by body, then by tile
@@ -201,6 +220,7 @@ struct Surfaces {
   std::vector<HostInTouch<D>> in_touch;         // hosts
   std::vector<std::uint32_t> moving;            // the numbers of these
   std::vector<std::uint32_t> place_of_motion;   // of each host, 1 + where that is, or 0
+  std::vector<Approach> approaches;             // so far, by pair
   std::vector<ActingBetween<D>> between;        // bodies, by pair
   std::vector<BetweenByPart<D>> between_parts;  // scratch
   std::vector<OnBodyByPart> on_bodies_by_part;  // scratch

@@ -4,6 +4,7 @@
 #include "mpm/step/kept_nodes.hpp"
 #include "mpm/step/stage_functions.hpp"
 #include "mpm/surfaces/acting.hpp"
+#include "mpm/surfaces/approaches.hpp"
 #include "mpm/surfaces/between.hpp"
 #include "mpm/surfaces/bonds.hpp"
 #include "mpm/surfaces/host_motion.hpp"
@@ -13,6 +14,7 @@
 #include "mpm/surfaces/parts.hpp"
 #include "mpm/surfaces/press.hpp"
 #include "mpm/surfaces/restitution.hpp"
+#include "mpm/surfaces/tell_others.hpp"
 
 namespace mpm {
 namespace {
@@ -208,6 +210,7 @@ void touch_surfaces(Domain<D>& domain) {
   pull_bonds(domain);
   find_motions(domain);
   for_each_own_part(domain, [&](SurfacePart<D>& part) { press_part(domain, part); });
+  learn_approaches(domain);
   give_to_hosts(domain);
   sum_between(domain);
   add_restitution(domain);

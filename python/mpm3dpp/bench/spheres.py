@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 RADIUS = 2.5 * CELL
 PARTICLES = 552  # Points of the lattice in such a ball, whose centre lies between them.
 # Speed at which neighbours come together [m/s]: they stay pressed through all steps that are timed.
-APPROACH = 1.0
+APPROACH = 5.0
 
 
 def tables(count: int, translation: Array) -> dict[str, Any]:

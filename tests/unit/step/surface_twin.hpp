@@ -76,9 +76,10 @@ class SurfaceTwin {
                  : std::function<reference::ShapeValue(double)>(reference::quadratic);
     for (reference::Body<D>& body : step.bodies)
       if (!body.prescribed()) body.motion = reference::motion_of(body.particles);
-    start_nodes(given.shaking);
+    start_nodes();
     bonds = reference::find_bonds(surfaces);
     surfaces.start();
+    shake_nodes(given.shaking);
     find_points();
   }
 
@@ -241,18 +242,26 @@ class SurfaceTwin {
   }
 
   /// The nodes of both with the same velocities, those of the bodies and others besides.
-  void start_nodes(double shaking) {
+  void start_nodes() {
     std::vector<std::map<Index<D>, Vec<double, D>>> v(surfaces.bodies.size());
     for_each_node([&](const Index<D>& i, NodeBlock<D>& block, int n, std::size_t body) {
       v[body].try_emplace(i, block.vector(n, velocity_at));
     });
     for (std::size_t b = 0; b < v.size(); ++b) {
       if (!surfaces.bodies[b].deforms()) continue;
-      surfaces.bodies[b].kept->start([&](const Index<D>& i) {
-        Vec<double, D> w = v[b].at(i);
-        for (int a = 0; a < D; ++a) w[a] += shaking * any();
-        return w;
-      });
+      surfaces.bodies[b].kept->start([&](const Index<D>& i) { return v[b].at(i); });
+    }
+  }
+  /// Both; what is set back knows the velocities before.
+  void shake_nodes(double shaking) {
+    for (reference::SurfaceBody<D>& body : surfaces.bodies) {
+      if (!body.deforms()) continue;
+      reference::Body<D>& of = body.kept->body;
+      for (auto& [i, node] : of.nodes) {
+        for (int a = 0; a < D; ++a) node.v[a] += shaking * any();
+        step.hold(i, node.v);
+      }
+      step.reflect(of, &reference::Node<D>::v);
     }
     for_each_node([&](const Index<D>& i, NodeBlock<D>& block, int n, std::size_t body) {
       for (int a = 0; a < D; ++a)

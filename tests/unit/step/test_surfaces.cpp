@@ -44,23 +44,22 @@ std::array<int, 2> count_touches(const SurfaceTwin<D>& twin) {
   return count;
 }
 
-/// Springs alone: deeper than where they begin softly, and so, and set back.
+/// Springs alone: where they begin softly and deeper, and set back.
 template <int D>
 void check_springs(Report& report, BasisId basis) {
   SurfaceTwin<D> twin(two_blocks<D>(basis));
   SurfaceComparison<D> comparison(report, twin);
   std::array<int, 2> most{};
-  double deepest = -1.0;
+  std::array<int, 2> firm{};  // no, yes
   for (int k = 0; k < 20; ++k) {
     comparison.make_step(step_of_waves);
     const auto now = count_touches(twin);
     for (std::size_t i : {0, 1}) most[i] = std::max(most[i], now[i]);
     for (const auto& touch : twin.surfaces.touches)
-      deepest = std::max(deepest, twin.surfaces.overlap(touch));
+      ++firm[twin.surfaces.overlap(touch) > 0.5 * touch.w ? 1 : 0];
   }
   CHECK(most[0] >= 8 && most[1] >= 8, most[0], most[1]);
-  CHECK(deepest > 0.5 * twin.surfaces.w && twin.surfaces.w < 0.049 * twin.cell, deepest,
-        twin.surfaces.w);
+  CHECK(firm[0] >= 8 && firm[1] >= 8, firm[0], firm[1]);
   CHECK(!twin.surfaces.set_back.empty());
 }
 
@@ -142,14 +141,14 @@ void check_restitution(Report& report, bool rigid) {
   given.restitution = 0.4;
   // Of .9 the dashpot takes by its own law, of .4 as much as a step may.
   given.pairs = {{0, 1, {.friction = 0.8, .restitution = 0.9}}};
-  given.bodies[0].density = 200.0;  // its waves are fast, so that it parts soon
+  given.bodies[0].density = 400.0;  // its waves are fast, so that it parts soon
   SurfaceTwin<D> twin(given);
   SurfaceComparison<D> comparison(report, twin);
   double taken = 0.0, largest = 0.0, kinetic = 0.0;
   for (const auto& body : twin.surfaces.bodies)
     for (const auto& p : body.body().particles) kinetic += 0.5 * p.m * dot(p.v, p.v);
   for (int k = 0; k < 44; ++k) {
-    comparison.make_step(step_of_waves);
+    comparison.make_step(0.8 * step_of_waves);
     for (const auto& body : twin.surfaces.bodies) {
       const RigidMotion motion = body.motion();
       const double power = dot(body.force, motion.velocity) +
