@@ -28,6 +28,8 @@ LAYERS = {
     "walls/walls.hpp": 3,
     "walls/face_impulses.hpp": 3,
     "grid": 4,
+    "followers/node_table.hpp": 5,
+    "followers/followers.hpp": 6,
     "surfaces/hosts.hpp": 3,
     "surfaces/other_ranks.hpp": 4,
     "surfaces/surfaces.hpp": 5,
@@ -42,11 +44,12 @@ LAYERS = {
     "walls": 9,
     "loads": 9,
     "surfaces": 9,
+    "followers": 9,
     "device": 10,
     "run": 11,
 }
 # The stages: those of a subject in its folder.
-TOGETHER = {"step", "rigid", "walls", "loads", "surfaces"}
+TOGETHER = {"step", "rigid", "walls", "loads", "surfaces", "followers"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"][^>"]+)[>"]')
 PYTHON = re.compile(r'^[<"](nanobind/|pybind11/|Python\.h|numpy/)')
 

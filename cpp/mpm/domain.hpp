@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mpm/contact/contact.hpp"
+#include "mpm/followers/followers.hpp"
 #include "mpm/grid/tile_grid.hpp"
 #include "mpm/ledger/ledger.hpp"
 #include "mpm/ledger/part_energies.hpp"
@@ -78,7 +79,8 @@ struct Domain {
   std::vector<BodyForce<D>> body_forces;
   std::vector<Damping> dampings;           // of bodies' motion
   std::vector<Vec<double, D>> load_parts;  // scratch: force by patch and load [N]
-  std::vector<KeptSpin> kept_spins;        // of bodies on nodes of their own, by body
+  Followers<D> followers;                  // of the nodes of bodies on nodes of their own
+  std::vector<KeptSpin> kept_spins;        // of these bodies, by body
   std::vector<SharedBody> shared_bodies;   // of these, by body
   std::vector<RigidMotion> rigid;          // one per entry of rigid_bodies
   std::vector<RigidMotion> rigid_before;

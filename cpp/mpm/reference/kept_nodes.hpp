@@ -2,6 +2,7 @@
 // A step of a body on nodes of its own, as step/kept_nodes.hpp writes it: one particle and one node
 // at a time. Nodes keep u and v, particles F; where these lie in the body, X, is that of the start.
 #include "mpm/math/inverse.hpp"
+#include "mpm/reference/followers.hpp"
 #include "mpm/reference/loads.hpp"
 #include "mpm/reference/step.hpp"
 
@@ -9,8 +10,9 @@ namespace mpm::reference {
 
 template <int D>
 struct KeptNodes {
-  const Step<D>& step;                     // shape functions, gravity, time step
-  Body<D> body{};                          // its nodes have masses and velocities
+  const Step<D>& step;  // shape functions, gravity, time step
+  Body<D> body{};       // its nodes have masses and velocities
+  Followers<D> followers{};
   std::map<Index<D>, Vec<double, D>> u{};  // [m]
   std::vector<Mat<double, D>> F{};         // of each particle
   std::vector<double> taken{};             // of its mean stress, by averaging [Pa]
@@ -28,12 +30,14 @@ struct KeptNodes {
         body.nodes[i].m += p.m * N;
       });
     step.fold(body, [](Node<D>& node, Node<D>& image, auto&&) { image.m += node.m; });
+    followers.find(step, body);
     for (auto& [i, node] : body.nodes) {
+      u[i] = Vec<double, D>::zero();
+      if (!(node.m > 0.0)) continue;  // it follows, or stays at rest
       node.v = velocity(i);
       step.hold(i, node.v);
-      u[i] = Vec<double, D>::zero();
     }
-    step.reflect(body, &Node<D>::v);
+    take(&Node<D>::v);
     for (const auto& [i, node] : body.nodes) turns = turns && step.walls.constrained_axes(i) == 0;
     Mat<double, D> one{};
     for (int a = 0; a < D; ++a) one[a][a] = 1.0;
@@ -41,12 +45,19 @@ struct KeptNodes {
     taken.assign(F.size(), 0.0);
   }
 
+  /// Of nodes that follow, and of those beyond walls.
+  void take(Vec<double, D> Node<D>::* vector) {
+    followers.take([&](const Index<D>& i) -> Vec<double, D>& { return body.nodes.at(i).*vector; });
+    step.reflect(body, vector);
+  }
+
   /// v -= R G R v of damp_short_waves.cpp, (W1); c over h for the time between such steps is
-  /// `waves`, and `whole` the mass of which nodes have less that are damped at b, by a the rest.
-  void damp_short_waves(double waves, double a, double b, double whole) {
+  /// `waves`.
+  void damp_short_waves(double waves, double a) {
     using Velocities = std::map<Index<D>, Vec<double, D>>;
     const auto unseen = [&](const Velocities& v) {
-      Velocities r = v;
+      Velocities seen;  // m_i Q* Q v
+      for (const auto& [i, of_node] : v) seen[i] = Vec<double, D>::zero();
       for (const Particle<D>& p : body.particles) {
         Vec<double, D> mean = Vec<double, D>::zero();
         Mat<double, D> C{};
@@ -62,19 +73,23 @@ struct KeptNodes {
         });
         step.for_each_node(p.X, [&](const Index<D>& i, double N, const Vec<double, D>&) {
           for (int k = 0; k < D; ++k) {
-            double seen = mean[k];
-            for (int l = 0; l < D; ++l) seen += C[k][l] * arm(i, l);
-            r[i][k] -= p.m * N * seen / body.nodes[i].m;
+            double field = mean[k];
+            for (int l = 0; l < D; ++l) field += C[k][l] * arm(i, l);
+            seen[i][k] += p.m * N * field;
           }
         });
       }
+      followers.give([&](const Index<D>& i) -> Vec<double, D>& { return seen.at(i); });
+      Velocities r = v;
+      for (auto& [i, of_node] : r)
+        if (body.nodes[i].m > 0.0) of_node -= (1.0 / body.nodes[i].m) * seen[i];
+      followers.take([&](const Index<D>& i) -> Vec<double, D>& { return r.at(i); });
       return r;
     };
     Velocities v;
     for (const auto& [i, node] : body.nodes) v[i] = node.v;
     Velocities taken = unseen(v);
-    for (auto& [i, r] : taken)
-      r = std::min(waves * (a + b * std::max(1.0 - body.nodes[i].m / whole, 0.0)), 1.0) * r;
+    for (auto& [i, r] : taken) r = std::min(waves * a, 1.0) * r;
     taken = unseen(taken);
     for (auto& [i, node] : body.nodes) node.v -= taken[i];
   }
@@ -118,6 +133,10 @@ struct KeptNodes {
     step.fold(body,
               [](Node<D>& node, Node<D>& image, auto&& mirrored) { image.f += mirrored(node.f); });
   }
+  /// And of who follows theirs who lead.
+  void give_forces() {
+    followers.give([&](const Index<D>& i) -> Vec<double, D>& { return body.nodes.at(i).f; });
+  }
 
   /// (P1), (P2) of step/average_in_body.cpp, with b = .95.
   void average() {
@@ -131,11 +150,19 @@ struct KeptNodes {
       step.for_each_node(p.X, [&](const Index<D>& i, double N, const Vec<double, D>&) {
         sums[i] += p.V * mean(p) * N;
       });
+    for (const auto& [j, leaders] : followers.of)
+      for (const Leader<D>& leader : leaders) sums[leader.node] += leader.e * sums[j];
+    for (auto& [i, sum] : sums)
+      if (body.nodes[i].m > 0.0) sum /= body.nodes[i].m;
+    for (const auto& [j, leaders] : followers.of) {
+      sums[j] = 0.0;
+      for (const Leader<D>& leader : leaders) sums[j] += leader.e * sums[leader.node];
+    }
     for (std::size_t k = 0; k < F.size(); ++k) {
       const Particle<D>& p = body.particles[k];
       double projected = 0.0;
       step.for_each_node(p.X, [&](const Index<D>& i, double N, const Vec<double, D>&) {
-        projected += N * sums[i] / body.nodes[i].m;
+        projected += N * sums[i];
       });
       taken[k] = 0.95 * (mean(p) - p.m / p.V * projected);
     }
@@ -193,10 +220,10 @@ struct KeptNodes {
   void advance_nodes() {
     for (auto& [i, node] : body.nodes) {
       step.hold(i, node.f);
-      node.dv = (0.5 * (step.dt + step.dt_before) / node.m) * node.f;
+      node.dv = (node.m > 0.0 ? 0.5 * (step.dt + step.dt_before) / node.m : 0.0) * node.f;
       node.v += node.dv;
     }
-    step.reflect(body, &Node<D>::v);
+    take(&Node<D>::v);
     for (auto& [i, node] : body.nodes) u[i] += step.dt * node.v;
   }
 

@@ -3,9 +3,10 @@
 // points of a surface, planes of symmetry, and a touch.
 #include <complex>
 #include <numbers>
+#include <utility>
 #include <vector>
 
-#include "mpm/math/vec.hpp"
+#include "mpm/reference/mirrors.hpp"
 
 namespace mpm::reference {
 
@@ -69,22 +70,6 @@ struct Height {
   }
 };
 
-/// What walls that are planes of symmetry make of a place: its image, along some axes or none.
-template <int D>
-struct Mirror {
-  Vec<double, D> sign, twice;  // 1 or -1; where the wall is, twice [m]
-
-  template <class T>
-  Vec<T, D> place(Vec<T, D> x) const {
-    for (int a = 0; a < D; ++a) x[a] = sign[a] * x[a] + twice[a];
-    return x;
-  }
-  Vec<double, D> vector(Vec<double, D> v) const {
-    for (int a = 0; a < D; ++a) v[a] *= sign[a];
-    return v;
-  }
-};
-
 /// Whom a point touches: a body by its number, or a face of the box as -1 - (2 axis + side).
 using Whom = int;
 constexpr bool is_face(Whom whom) { return whom < 0; }
@@ -113,6 +98,22 @@ struct SurfaceTouch {
   Vec<double, D> place{};             // of contact [m]
   bool rubs = false, slides = false;  // has friction; at its limit
 };
+
+/// The two who touch, the lower number first; a face last.
+template <int D>
+std::pair<Whom, Whom> pair_of(const SurfaceTouch<D>& t) {
+  const auto body = static_cast<Whom>(t.body);
+  return is_face(t.whom) ? std::pair(body, t.whom)
+                         : std::pair(std::min(body, t.whom), std::max(body, t.whom));
+}
+
+/// What is stored over k: of the force o, which begins softly from o = -w / 2 to w / 2, (S4).
+template <class T>
+T stored(const T& o, double w) {
+  if (std::real(o) >= 0.5 * w) return 0.5 * o * o + w * w / 24.0;
+  const T begun = o + 0.5 * w;
+  return begun * begun * begun / (6.0 * w);
+}
 
 /// What a touch remembers from its beginning on: s of (S2) and w of (S4) [m].
 template <int D>

@@ -10,26 +10,6 @@
 
 namespace mpm::reference {
 
-/// That which leaves a place where it is, and those of walls that are slip or fixed, of edges and
-/// corners too.
-template <int D, class F>
-void for_each_mirror(const Step<D>& step, F&& f) {
-  Index<D> low, high;
-  low.fill(-1), high.fill(1);
-  for_each_index<D>(low, high, [&](const Index<D>& side) {
-    Mirror<D> mirror;
-    for (int a = 0; a < D; ++a) {
-      const auto k = static_cast<std::size_t>(a);
-      mirror.sign[a] = side[k] == 0 ? 1.0 : -1.0;
-      mirror.twice[a] = side[k] > 0 ? 2.0 * step.h * step.walls.cells[k] : 0.0;
-      if (side[k] == 0) continue;
-      const Wall wall = step.walls.face[k][side[k] < 0 ? 0 : 1];
-      if (!step.walls.exist || (wall != Wall::slip && wall != Wall::fixed)) return;
-    }
-    f(mirror);
-  });
-}
-
 template <int D>
 struct Surfaces {
   const Step<D>& step;
@@ -95,11 +75,6 @@ struct Surfaces {
     });
     kept = std::move(now);  // Who parts forgets.
     for (const auto& [pair, speed] : begun) approaches[pair] = std::max(approaches[pair], speed);
-  }
-  static std::pair<Whom, Whom> pair_of(const SurfaceTouch<D>& t) {
-    const auto body = static_cast<Whom>(t.body);
-    return is_face(t.whom) ? std::pair(body, t.whom)
-                           : std::pair(std::min(body, t.whom), std::max(body, t.whom));
   }
   /// How fast the surfaces approach each other.
   double approach(const SurfaceTouch<D>& t, const Vec<double, D>& u) const {
@@ -189,14 +164,6 @@ struct Surfaces {
     for (Felt<D>& felt : t.felt) felt.share /= S;
     if (S > 0.0) t.z = e * height.zeta(S);
     return S > 0.0;
-  }
-
-  /// What is stored over k: of the force o, which begins softly from o = -w / 2 to w / 2, (S4).
-  template <class T>
-  static T stored(const T& o, double w) {
-    if (std::real(o) >= 0.5 * w) return 0.5 * o * o + w * w / 24.0;
-    const T begun = o + 0.5 * w;
-    return begun * begun * begun / (6.0 * w);
   }
 
   /// The energy of the spring of a touch, of the places of p and of the points that it feels, (S3).

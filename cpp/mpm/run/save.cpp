@@ -2,6 +2,7 @@
 #include "mpm/run/save.hpp"
 
 #include "mpm/contact/candidates.hpp"
+#include "mpm/followers/find_followers.hpp"
 #include "mpm/grid/blocks.hpp"
 #include "mpm/run/check_restored.hpp"
 #include "mpm/run/held_bodies.hpp"
@@ -14,7 +15,7 @@ namespace {
 
 constexpr const char* other_version = "it was made by another version of mpm3dpp";
 constexpr const char* other_case = "it was made from another case";
-constexpr std::int64_t format = 20;  // raised whenever exchange() or what a value means changes
+constexpr std::int64_t format = 21;  // raised whenever exchange() or what a value means changes
 
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {
@@ -97,6 +98,7 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
   for (SurfaceLoad<D>& load : domain.loads) stream(load.mean, load.force, load.impulse);
   if (stream.restores()) rebuild(domain, std::move(bodies), stream);
   exchange_kept_nodes(domain, stream);
+  if (stream.restores() && has_kept_nodes(domain)) find_followers(domain, false);
   exchange_kept_spins(domain, stream);
   exchange_surfaces(domain, stream);
   if (domain.surfaces.meet) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "mpm/followers/find_followers.hpp"
+#include "mpm/followers/follow.hpp"
 #include "mpm/grid/halo.hpp"
 #include "mpm/run/kept_spins.hpp"
 #include "mpm/run/part_sums.hpp"
@@ -91,11 +93,16 @@ void give_to_nodes(Domain<D>& domain, const std::vector<bool>& bodies) {
     fold_at_walls(domain.grid, patch, second_halves(block), momentum_at);
   });
   exchange_and_sum(domain.grid, domain.threads, half_record, record);
+  give_to_leading(domain, given_velocity);
   for_each_meant(domain, bodies, [&](std::size_t p) {
     const NodeBlock<D> given = second_halves(domain.grid.block(p));
+    if (domain.followers.exist)
+      for (int n = 0; n < given.count; ++n)
+        given.records[n][mass_at] = domain.grid.block(p).records[n][mass_at];
     momentum_to_velocity(domain.grid, domain.grid.patches[p], given, velocity_at);
     reflect_at_walls(domain.grid, domain.grid.patches[p], given, velocity_at);
   });
+  take_from_leading(domain, given_velocity);
 }
 
 /// Let the nodes have those velocities as well; returns the largest of them.
@@ -141,6 +148,7 @@ void begin_with_rigid_motions(Domain<D>& domain, const std::vector<bool>& bodies
     }
     hold_kept_nodes(domain.grid, patch, block);
   });
+  take_from_leading(domain, velocity_at);
 }
 
 void check_frame(bool holds, const char* sentence) {
@@ -191,6 +199,7 @@ template <int D>
 void start_in_body(Domain<D>& domain) {
   if (!has_kept_nodes(domain)) return;
   std::fill_n(domain.grid.kept.numbers.data(), domain.grid.kept.needed, 0.0);
+  domain.followers = {};
   give_to_nodes(domain, {});
   for_each_meant(domain, {}, [&](std::size_t p) {
     const NodeBlock<D> block = domain.grid.block(p);
@@ -199,6 +208,7 @@ void start_in_body(Domain<D>& domain) {
       std::fill_n(block.records[n] + half_record, half_record, 0.0);  // no increments
     }
   });
+  find_followers(domain, true);
   list_kept_spins(domain);
   find_kept_velocities(domain);
   start_average_in_body(domain);

@@ -1,3 +1,4 @@
+#include "mpm/followers/follow.hpp"
 #include "mpm/loads/body_forces.hpp"
 #include "mpm/loads/carry_loads.hpp"
 #include "mpm/rigid/prescribed_bodies.hpp"
@@ -192,6 +193,72 @@ Work work_of_mirrored_weight(const Domain<D>& domain, const Patch<D>& patch,
   return work;
 }
 
+/// Hold the nodes of a patch at walls, and advance their velocities.
+template <int D>
+NodeWork hold_and_advance(Domain<D>& domain, std::size_t p) {
+  auto& grid = domain.grid;
+  const Patch<D>& patch = grid.patches[p];
+  const NodeBlock<D> block = grid.block(p);
+  double own[BlockShape<D>::nodes_max];
+  own_nodes(grid, patch, own);
+  if (patch.at_wall)
+    add_impulses_of_holding(domain, patch, block, own,
+                            reaction_of(domain, p, &AngularImpulses::walls));
+  hold_at_walls(domain, patch, block);
+  return advance(domain, patch, block, own, domain.sums[p]);
+}
+
+/// What follows once all nodes of a patch have their velocities: nodes beyond walls, the ledger,
+/// and the places of nodes in bodies.
+template <int D>
+void finish(Domain<D>& domain, std::size_t p, const NodeWork& done) {
+  auto& grid = domain.grid;
+  const double dt = domain.time_step;
+  const bool absorb = grid.walls.absorb();
+  const Patch<D>& patch = grid.patches[p];
+  const NodeBlock<D> block = grid.block(p);
+  double own[BlockShape<D>::nodes_max];
+  own_nodes(grid, patch, own);
+  PatchSums<D>& sums = domain.sums[p];
+  Work loads, dashpots, push, friction;
+  if (absorb && patch.at_wall) dashpots = work_of_dashpots(block, own, dt);
+  if (grid.has_wall_springs && patch.at_wall) {
+    push = work_of_faces(block, own, dt, true);
+    friction = work_of_faces(block, own, dt, false);
+  }
+  const Work mirrored = work_of_mirrored_weight(domain, patch, block);
+  // Particles near a wall read nodes beyond it: positions by the velocity, eq. (16), velocities
+  // by the increment, eq. (17).
+  reflect_at_walls(grid, patch, block, velocity_at);
+  reflect_at_walls(grid, patch, block, increment_at);
+  if (domain.pool_of(patch).at.growth_limit >= 0) reflect_volumes(grid, patch, block);
+  // After the reflection, as a piece may load a node beyond a wall: a force and a velocity that
+  // are both turned do the same work as those of the image, which has the force.
+  if (domain.has_loads()) loads = work_of_loads(domain, p);
+  if (domain.has_body_forces()) loads += work_of_body_force(domain, p);
+  // Nodes in bodies go with the new velocities all the step, others with the mean of both: what
+  // is a half of the increments' work for these is all of it.
+  const double halves = patch.keeps ? 2.0 : 1.0;
+  loads.second *= halves;
+  sums.damping_second *= halves;
+  add_impulses(domain, p, block, own);
+  // What is left is work of internal and contact forces; loads, walls and gravity have terms
+  // of their own in the ledger, with the velocity in the middle of the step.
+  sums.force_work = dt * (done.work + mirrored.first) - loads.first - dashpots.first - push.first -
+                    friction.first;
+  sums.load_first = loads.first;
+  sums.load_second = loads.second;
+  sums.dashpot_first = dashpots.first;
+  sums.dashpot_second = dashpots.second;
+  sums.wall_push = push;
+  sums.wall_friction = friction;
+  sums.gravity_first = dt * (done.gravity_first - mirrored.first);
+  sums.gravity_second = 0.5 * halves * dt * (done.gravity_second - mirrored.second);
+  if (!patch.keeps) return;
+  add_work_of_surfaces(domain, p);
+  count_kept_nodes(domain, move_kept_nodes(domain, patch, block, own, sums), sums);
+}
+
 }  // namespace
 
 /// Eq. (8), m_i dv_i = (f_i + m_i g) dt, with eq. (10) in the form m_i g: exact as gravity is
@@ -199,58 +266,21 @@ Work work_of_mirrored_weight(const Domain<D>& domain, const Patch<D>& patch,
 /// forces, and those of walls.
 template <int D>
 void advance_nodes(Domain<D>& domain) {
-  auto& grid = domain.grid;
-  const double dt = domain.time_step;
-  const bool absorb = grid.walls.absorb();
   for_each_patch(domain, prescribed, [&](std::size_t p) { advance_prescribed_nodes(domain, p); });
-  for_each_patch(domain, deformable | free_rigid | in_body, [&](std::size_t p) {
-    const Patch<D>& patch = grid.patches[p];
-    const NodeBlock<D> block = grid.block(p);
-    double own[BlockShape<D>::nodes_max];
-    own_nodes(grid, patch, own);
-    PatchSums<D>& sums = domain.sums[p];
-    if (patch.at_wall)
-      add_impulses_of_holding(domain, patch, block, own,
-                              reaction_of(domain, p, &AngularImpulses::walls));
-    hold_at_walls(domain, patch, block);
-    const NodeWork done = advance(domain, patch, block, own, sums);
-    Work loads, dashpots, push, friction;
-    if (absorb && patch.at_wall) dashpots = work_of_dashpots(block, own, dt);
-    if (grid.has_wall_springs && patch.at_wall) {
-      push = work_of_faces(block, own, dt, true);
-      friction = work_of_faces(block, own, dt, false);
-    }
-    const Work mirrored = work_of_mirrored_weight(domain, patch, block);
-    // Particles near a wall read nodes beyond it: positions by the velocity, eq. (16), velocities
-    // by the increment, eq. (17).
-    reflect_at_walls(grid, patch, block, velocity_at);
-    reflect_at_walls(grid, patch, block, increment_at);
-    if (domain.pool_of(patch).at.growth_limit >= 0) reflect_volumes(grid, patch, block);
-    // After the reflection, as a piece may load a node beyond a wall: a force and a velocity that
-    // are both turned do the same work as those of the image, which has the force.
-    if (domain.has_loads()) loads = work_of_loads(domain, p);
-    if (domain.has_body_forces()) loads += work_of_body_force(domain, p);
-    // Nodes in bodies go with the new velocities all the step, others with the mean of both: what
-    // is a half of the increments' work for these is all of it.
-    const double halves = patch.keeps ? 2.0 : 1.0;
-    loads.second *= halves;
-    sums.damping_second *= halves;
-    add_impulses(domain, p, block, own);
-    // What is left is work of internal and contact forces; loads, walls and gravity have terms
-    // of their own in the ledger, with the velocity in the middle of the step.
-    sums.force_work = dt * (done.work + mirrored.first) - loads.first - dashpots.first -
-                      push.first - friction.first;
-    sums.load_first = loads.first;
-    sums.load_second = loads.second;
-    sums.dashpot_first = dashpots.first;
-    sums.dashpot_second = dashpots.second;
-    sums.wall_push = push;
-    sums.wall_friction = friction;
-    sums.gravity_first = dt * (done.gravity_first - mirrored.first);
-    sums.gravity_second = 0.5 * halves * dt * (done.gravity_second - mirrored.second);
-    if (!patch.keeps) return;
-    add_work_of_surfaces(domain, p);
-    count_kept_nodes(domain, move_kept_nodes(domain, patch, block, own, sums), sums);
+  for_each_patch(domain, deformable | free_rigid,
+                 [&](std::size_t p) { finish(domain, p, hold_and_advance(domain, p)); });
+  if (!has_kept_nodes(domain)) return;
+  // Patches with nodes that follow others wait for these.
+  std::vector<NodeWork> done(domain.grid.patches.size());
+  const std::vector<std::uint8_t> waits = patches_that_follow(domain);
+  for_each_patch(domain, in_body, [&](std::size_t p) {
+    done[p] = hold_and_advance(domain, p);
+    if (!waits[p]) finish(domain, p, done[p]);
+  });
+  take_from_leading(domain, velocity_at);
+  take_from_leading(domain, increment_at);
+  for_each_patch(domain, in_body, [&](std::size_t p) {
+    if (waits[p]) finish(domain, p, done[p]);
   });
 }
 

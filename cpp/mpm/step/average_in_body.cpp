@@ -10,6 +10,7 @@
 // 1 - b keeps each particle's own volume. Of pressures that vary over cells R takes (k h)^2 / 4.
 #include <cmath>
 
+#include "mpm/followers/follow.hpp"
 #include "mpm/grid/halo.hpp"
 #include "mpm/schedule/scatter.hpp"
 #include "mpm/step/node_loops.hpp"
@@ -117,12 +118,17 @@ void project_pressure(Domain<D>& domain, bool counts) {
     });
   });
   exchange_and_sum_kept(grid, domain.threads, projected_at);
+  give_number_to_leading(domain, projected_at);
   for_each_averaging(domain, [&](std::size_t p) {
-    const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
     for (int n = 0; n < block.count; ++n)
       if (const double m = block.records[n][mass_at]; m > 0.0)
         block.displacements[n][projected_at] /= m;
+  });
+  take_number_from_leading(domain, projected_at);
+  for_each_averaging(domain, [&](std::size_t p) {
+    const Patch<D>& patch = grid.patches[p];
+    const NodeBlock<D> block = grid.block(p);
     for_each_ghost_node(grid, patch, [&](int node, int image, const WallImage<D>&) {
       block.displacements[node][projected_at] = block.displacements[image][projected_at];
     });

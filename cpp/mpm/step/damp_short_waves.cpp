@@ -1,12 +1,12 @@
 // Bodies on nodes of their own keep all that their nodes do, also what their particles hardly see:
-// waves as short as the cells, and the slow swings of nodes beyond the surface that almost no mass
-// and no stress holds. Every fiftieth step velocities lose a share of what is not seen of them,
-//   v -= R G R v,   R v = v - Q* Q v,   G_i = (a + b (1 - m_i / (s rho h^D))_+) (c / h) 50 dt, (W1)
+// waves as short as the cells. With a setting a > 0 velocities lose a share of what is not seen of
+// them in every fiftieth step,
+//   v -= R G R v,   R v = v - Q* Q v,   G = a (c / h) 50 dt,                                 (W1)
 // with Q to the particles' velocities and their affine parts and Q* back, as APIC maps both (Jiang
 // et al. 2015). R has eigenvalues from 0, for motions that are linear in the body, to 1; it is of
-// the fourth order in cells over wavelengths, near surfaces of the second. So a, a setting, takes
-// energy of bodies of a few cells; b, of the nodes with less than a share s of the mass of a whole
-// cell, hardly any.
+// the fourth order in cells over wavelengths, near surfaces of the second. So it takes energy of
+// bodies of a few cells too.
+#include "mpm/followers/follow.hpp"
 #include "mpm/grid/halo.hpp"
 #include "mpm/schedule/scatter.hpp"
 #include "mpm/step/kept_nodes.hpp"
@@ -19,8 +19,6 @@ namespace mpm {
 namespace {
 
 constexpr std::int64_t steps_between = 50;
-
-constexpr double of_light_nodes = 0.002, light = 3e-5;  // b, s
 
 /// m_i Q* Q of what stands at a number of the records of the nodes, by the particles of a patch.
 template <int number, int lanes, int D, BasisModel B>
@@ -75,6 +73,7 @@ void map_what_is_seen(Domain<D>& domain) {
   });
   // Those of other bodies have no use yet.
   exchange_and_sum(grid, domain.threads, force_at, record);
+  give_to_leading(domain, force_at);
 }
 
 /// G R v of the nodes of a patch is taken from v, and put where Q* Q v is.
@@ -83,14 +82,13 @@ void take_unseen(const Domain<D>& domain, const Body<D>& body, const NodeBlock<D
   const double h = domain.grid.cell_size,
                waves = std::sqrt(body.stiffness / body.initial_density) / h * steps_between *
                        domain.time_step,
-               whole = light * body.initial_density * std::pow(h, D);
+               share = std::min(waves * domain.short_wave_damping, 1.0);
   for (int n = 0; n < block.count; ++n) {
     double* const numbers = block.records[n];
     const double m = numbers[mass_at];
-    const double rate = domain.short_wave_damping + of_light_nodes * std::max(1.0 - m / whole, 0.0);
     for (int a = 0; a < D && m > 0.0; ++a) {
       double &v = numbers[velocity_at + a], &seen = numbers[force_at + a];
-      seen = std::min(waves * rate, 1.0) * (v - seen / m);
+      seen = share * (v - seen / m);
       v -= seen;
     }
   }
@@ -135,7 +133,7 @@ AngularMomentum angular_momentum_of_kept(TileGrid<D>& grid, const Patch<D>& patc
 template <int D>
 void damp_short_waves(Domain<D>& domain) {
   TileGrid<D>& grid = domain.grid;
-  if ((domain.step + 1) % steps_between != 0 || !(second_moment(grid.basis) > 0.0)) return;
+  if ((domain.step + 1) % steps_between != 0 || !(domain.short_wave_damping > 0.0)) return;
   // Before and, with the other sign, after: what is lost.
   const auto count_kinetic = [&](double sign) {
     for_each_patch(domain, in_body, [&](std::size_t p) {
@@ -160,11 +158,13 @@ void damp_short_waves(Domain<D>& domain) {
     take_unseen(domain, domain.body_of(grid.patches[p]), grid.block(p));
     hold_kept_nodes(grid, grid.patches[p], grid.block(p), force_at);
   });
+  take_from_leading(domain, force_at);
   map_what_is_seen<force_at>(domain);
   for_each_patch(domain, in_body, [&](std::size_t p) {
     give_seen(grid.block(p));
     hold_kept_nodes(grid, grid.patches[p], grid.block(p));
   });
+  take_from_leading(domain, velocity_at);
   count_kinetic(-1.0);
   leave_out_turning(-1.0);
 }

@@ -128,11 +128,12 @@ struct Stages : Data {
                                        false,
                                        false,
                                        mpm::start_forces<D>};
-  // When all forces are there, at nodes that have them from all patches.
+  // When all forces are there, at nodes that have them from all patches; those of followers go to
+  // who leads first.
   static constexpr Row turn_in_body{
       "turn bodies on nodes of their own", mpm::turn_in_body<D>,
-      lists | node_force | kept_nodes | kept_spins | surfaces | patch_sums,
-      node_force | kept_spins | patch_sums};
+      lists | node_force | kept_nodes | kept_spins | surfaces | patch_sums | impulses,
+      node_force | kept_spins | patch_sums | impulses};
   // After the exchange, as the force of a dashpot is not linear in C_i and m_i; before contact,
   // which balances all other forces of two bodies, eq. (13).
   static constexpr Row absorb{"absorb at walls", mpm::absorb_at_walls<D>,

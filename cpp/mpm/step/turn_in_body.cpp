@@ -2,6 +2,7 @@
 // (particles/kept_spin.hpp): with the angular momentum L of the body, which the moment T of all
 // forces changes, the nodes shall have I (I - D)^-1 L by the end of the step. What they lack of it
 // besides T is given to them as that of forces m_i alpha x r_i about the centre of mass.
+#include "mpm/followers/follow.hpp"
 #include "mpm/step/kept_nodes.hpp"
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stage_functions.hpp"
@@ -150,6 +151,7 @@ Vector3 lacking(const Domain<D>& domain, const Patch<D>& patch, const TurningSum
 
 template <int D>
 void turn_in_body(Domain<D>& domain) {
+  give_forces_to_leading(domain);
   const auto of_patch = [&](std::size_t p, const KeptSpin& turning) {
     return sums_of_nodes(domain, p, turning.centre);
   };

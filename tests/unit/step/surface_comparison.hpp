@@ -70,7 +70,10 @@ class SurfaceComparison {
     }
     if (stage == "turn bodies on nodes of their own") {
       for (reference::SurfaceBody<D>& body : twin_.surfaces.bodies) body.push_as_one();
-      for (reference::KeptNodes<D>& kept : twin_.kept) kept.turn();
+      for (reference::KeptNodes<D>& kept : twin_.kept) {
+        kept.give_forces();
+        kept.turn();
+      }
       compare_forces();
     }
     if (stage == "advance nodes") {

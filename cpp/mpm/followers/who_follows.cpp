@@ -1,0 +1,160 @@
+#include "mpm/followers/who_follows.hpp"
+
+#include <array>
+#include <cmath>
+#include <iterator>
+
+namespace mpm {
+namespace {
+
+/// One body: its cells and nodes, with those that walls mirror.
+template <int D>
+struct BodyOfNodes {
+  const Walls<D>& walls;
+  OnesOfBody<D> cells, masses;
+
+  /// How much of a cell is filled. Half of that about a node on a wall is beyond it.
+  double filled(const Index<D>& cell) const {
+    const auto image = walls.image(cell);
+    double share = value_of(cells, image ? image->node : cell);
+    for (std::size_t a = 0; a < D; ++a)
+      for (const int side : {0, 1})
+        if (walls.exist && mirrors(walls.face[a][side]) &&
+            cell[a] == (side == 0 ? 0 : walls.cells[a]))
+          share *= 2.0;
+    return share;
+  }
+  static bool mirrors(Wall wall) { return wall == Wall::slip || wall == Wall::fixed; }
+
+  bool leads(const std::type_identity_t<Index<D>>& node) const {
+    constexpr double least = 1.5 / (1 << D);  // of 2^D particles a cell more than one
+    const auto image = walls.image(node);
+    if (!(value_of(masses, image ? image->node : node) > 0.0)) return false;
+    if (filled(node) >= least) return true;
+    bool found = false;
+    for_each_around(node, 1, [&](const Index<D>& c) { found = found || filled(c) >= least; });
+    return found;
+  }
+  /// Is there matter in any of the cells around?
+  bool is_reached(const Index<D>& node) const {
+    bool found = false;
+    for_each_around(node, 1, [&](const Index<D>& c) { found = found || filled(c) > 0.0; });
+    return found;
+  }
+  template <class F>
+  static void for_each_around(const Index<D>& node, int range, F&& f) {
+    Index<D> low = node, high = node;
+    for (std::size_t a = 0; a < D; ++a) {
+      low[a] -= range;
+      high[a] += range;
+    }
+    for_each_index<D>(low, high, f);
+  }
+};
+
+/// The coefficients c of (E1), by the moments of those who lead, (1, X) (1, X)^T; are there enough?
+template <int D>
+bool solve(std::array<std::array<double, D + 1>, D + 1> moments, std::array<double, D + 1>& c) {
+  c = {};
+  c[0] = 1.0;
+  // Of a positive matrix: no pivots are needed.
+  for (std::size_t k = 0; k <= D; ++k) {
+    if (!(moments[k][k] > 1e-6)) return false;
+    for (std::size_t i = k + 1; i <= D; ++i) {
+      const double factor = moments[i][k] / moments[k][k];
+      for (std::size_t j = k; j <= D; ++j) moments[i][j] -= factor * moments[k][j];
+      c[i] -= factor * c[k];
+    }
+  }
+  for (std::size_t k = D + 1; k-- > 0;) {
+    for (std::size_t j = k + 1; j <= D; ++j) c[k] -= moments[k][j] * c[j];
+    c[k] /= moments[k][k];
+  }
+  return true;
+}
+
+/// (E1); none if too few lead near it.
+template <int D>
+std::vector<Led<D>> leaders_of(const BodyOfNodes<D>& body,
+                               const std::type_identity_t<Index<D>>& node) {
+  constexpr int farthest = 3;
+  for (int range = 2; range <= farthest; ++range) {
+    std::vector<Led<D>> led;
+    std::array<std::array<double, D + 1>, D + 1> moments{};
+    const auto away = [&](const Index<D>& i) {
+      std::array<double, D + 1> x{1.0};
+      for (std::size_t a = 0; a < D; ++a) x[a + 1] = i[a] - node[a];
+      return x;
+    };
+    const auto weight = [&](const std::array<double, D + 1>& x) {
+      double square = 0.0;
+      for (std::size_t a = 1; a <= D; ++a) square += x[a] * x[a];
+      return 1.0 / (square * square);
+    };
+    body.for_each_around(node, range, [&](const Index<D>& i) {
+      if (i == node || !body.leads(i)) return;
+      const auto image = body.walls.image(i);
+      led.push_back({image ? image->node : i, i, 0.0, image ? image->turned : 0u});
+      const auto x = away(i);
+      for (std::size_t r = 0; r <= D; ++r)
+        for (std::size_t s = 0; s <= D; ++s) moments[r][s] += weight(x) * x[r] * x[s];
+    });
+    std::array<double, D + 1> c;
+    if (!solve<D>(moments, c)) continue;
+    for (Led<D>& one : led) {
+      const auto x = away(one.beyond);
+      for (std::size_t r = 0; r <= D; ++r) one.share += weight(x) * x[r] * c[r];
+    }
+    return led;
+  }
+  return {};
+}
+
+/// Shares may be below zero: who would leave a leading node less than half of its mass does not
+/// follow.
+template <int D>
+void keep_masses(const BodyOfNodes<D>& body, std::vector<Follower<D>>& all) {
+  const auto place_of_mass = [&](const Index<D>& node) {
+    const auto index = [](const OfNode<D>& one) -> const Index<D>& { return one.node.node; };
+    return static_cast<std::size_t>(std::ranges::lower_bound(body.masses, node, {}, index) -
+                                    body.masses.begin());
+  };
+  for (bool changed = true; changed;) {
+    std::vector<double> with(body.masses.size());
+    for (std::size_t k = 0; k < with.size(); ++k) with[k] = body.masses[k].value;
+    for (const Follower<D>& one : all)
+      for (const Led<D>& led : one.led) with[place_of_mass(led.by)] += led.share * one.mass;
+    const auto takes_too_much = [&](const Led<D>& led) {
+      const std::size_t k = place_of_mass(led.by);
+      return led.share < 0.0 && with[k] < 0.5 * body.masses[k].value;
+    };
+    changed = std::erase_if(all, [&](const Follower<D>& one) {
+                return one.mass > 0.0 && std::ranges::any_of(one.led, takes_too_much);
+              }) > 0;
+  }
+}
+
+}  // namespace
+
+template <int D>
+void add_followers(const Walls<D>& walls, OnesOfBody<D> cells, OnesOfBody<D> masses, bool at_start,
+                   std::vector<Follower<D>>& all) {
+  const BodyOfNodes<D> body{walls, cells, masses};
+  std::vector<Follower<D>> own;
+  for (const OfNode<D>& one : body.masses) {
+    const Index<D>& node = one.node.node;
+    if ((!at_start && one.value > 0.0) || body.walls.image(node)) continue;
+    if (body.leads(node) || !body.is_reached(node)) continue;
+    std::vector<Led<D>> led = leaders_of(body, node);
+    if (!led.empty()) own.push_back({one.node, one.value, std::move(led)});
+  }
+  keep_masses(body, own);
+  std::ranges::move(own, std::back_inserter(all));
+}
+
+template void add_followers<2>(const Walls<2>&, OnesOfBody<2>, OnesOfBody<2>, bool,
+                               std::vector<Follower<2>>&);
+template void add_followers<3>(const Walls<3>&, OnesOfBody<3>, OnesOfBody<3>, bool,
+                               std::vector<Follower<3>>&);
+
+}  // namespace mpm
