@@ -94,8 +94,8 @@ def toothed(half: bool, steps: int) -> Simulation:
 
 
 def test_half_a_body_has_the_followers_of_the_whole() -> None:
-    """Those who lead may lie beyond the plane of symmetry: the same to rounding, and the momentum of
-    the half is what the faces of the box have given it."""
+    """Those who lead may lie beyond the plane of symmetry: the same to rounding, and the momentum
+    of the half is what the faces of the box have given it."""
     half, whole = toothed(True, 300), toothed(False, 300)
     found = []
     for simulation in (half, whole):

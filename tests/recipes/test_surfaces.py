@@ -270,7 +270,7 @@ def inner_gap(simulation: Simulation) -> float:
 
 def test_a_ring_touches_itself() -> None:
     """At 50 m/s its inner faces meet; without contact with itself they lie in each other. A program
-    apart rebounds with 36.4 at 45 and 37.7 at 60 m/s; here with 37.4, to 2 % of what lies between."""
+    apart rebounds with 36.4 at 45 and 37.7 at 60 m/s; 37.4 here, to 2 % of what lies between."""
     simulation, columns, gaps = run(ring(50.0, 1.6e-3), look=inner_gap)
     assert not simulation.core.warnings()
     energy = columns["kinetic"] + columns["internal"] + columns["springs"]
