@@ -93,7 +93,7 @@ std::vector<Follower<D>> all_followers(Domain<D>& domain, bool at_start) {
   return all;
 }
 
-/// Who gives a node what it follows or gets: of the followers by their numbers, or of who leads.
+/// The pairs of who leads and who follows, in the order of either.
 template <int D>
 struct Lists {
   struct Of {
@@ -183,7 +183,7 @@ void make_lists(const TileGrid<D>& grid, const Lists<D>& lists, Followers<D>& ma
   plan(made.leading, made.patches, grid);
 }
 
-/// (E2)
+/// Masses of those who follow go to those who lead, (E2).
 template <int D>
 void give_masses(TileGrid<D>& grid, const std::vector<Follower<D>>& all) {
   std::vector<OfNode<D>> given;
