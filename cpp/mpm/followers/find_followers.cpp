@@ -93,94 +93,99 @@ std::vector<Follower<D>> all_followers(Domain<D>& domain, bool at_start) {
   return all;
 }
 
-/// The pairs of who leads and who follows, in the order of either.
+/// One node's part in the sum for another of its body.
 template <int D>
-struct Lists {
-  struct Of {
-    NodeOfBody<D> node, other;
-    Led<D> led;
-  };
-  std::vector<Of> by_leading, by_following;  // by `node`, then by the other
-
-  explicit Lists(const std::vector<Follower<D>>& all) {
-    for (const Follower<D>& one : all)
-      for (const Led<D>& led : one.led) {
-        const NodeOfBody<D> leading{one.node.body, led.by};
-        by_leading.push_back({leading, one.node, led});
-        by_following.push_back({one.node, leading, led});
-      }
-    for (std::vector<Of>* list : {&by_leading, &by_following})
-      std::ranges::sort(*list, [](const Of& x, const Of& y) {
-        return std::tie(x.node, x.other, x.led.beyond) < std::tie(y.node, y.other, y.led.beyond);
-      });
-  }
+struct Part {
+  NodeOfBody<D> of;
+  Index<D> from{}, beyond{};
+  double share = 0.0;
+  unsigned turned = 0;
 };
-
-template <class T>
-void keep_once(std::vector<T>& all) {
-  std::ranges::sort(all);
-  const auto again = std::ranges::unique(all);
-  all.erase(again.begin(), again.end());
-}
-
-/// The links of the nodes of a patch, by who gives in a table.
+/// In the order of whom they are for: of what is given to those who lead, or taken from them.
 template <int D>
-void add_links(const TileGrid<D>& grid, const Patch<D>& patch,
-               const std::vector<typename Lists<D>::Of>& list,
-               const std::vector<NodeOfBody<D>>& givers, std::vector<NodeLinks>& nodes,
-               std::vector<NodeLink<D>>& links) {
-  for (int n = 0; n < patch.shape.node_count; ++n) {
-    const auto of = std::ranges::equal_range(
-        list, NodeOfBody<D>{patch.body, index_of(grid, patch, n)}, {}, &Lists<D>::Of::node);
-    if (of.empty()) continue;
-    nodes.push_back(
-        {n, static_cast<std::uint32_t>(links.size()), static_cast<std::uint32_t>(of.size())});
-    for (const auto& one : of) {
-      const auto at = std::ranges::lower_bound(givers, one.other) - givers.begin();
-      links.push_back({static_cast<std::uint32_t>(at), one.led.share,
-                       static_cast<std::uint8_t>(one.led.turned), one.led.beyond});
+std::vector<Part<D>> parts_of(const std::vector<Follower<D>>& all, bool given) {
+  std::vector<Part<D>> parts;
+  for (const Follower<D>& one : all)
+    for (const Led<D>& led : one.led) {
+      const NodeOfBody<D> leading{one.node.body, led.by};
+      parts.push_back({given ? leading : one.node, given ? one.node.node : led.by, led.beyond,
+                       led.share, led.turned});
     }
-  }
+  std::ranges::sort(parts, [](const Part<D>& x, const Part<D>& y) {
+    return std::tie(x.of, x.from, x.beyond) < std::tie(y.of, y.from, y.beyond);
+  });
+  return parts;
 }
 
-/// The nodes of own and foreign patches that a list is of, and who gives to them.
+/// The parts of one sum, and its number once some patch here has its node.
 template <int D>
-void add_nodes_here(const TileGrid<D>& grid, const std::vector<typename Lists<D>::Of>& list,
-                    std::vector<NodeOfBody<D>>& here, std::vector<NodeOfBody<D>>& givers) {
-  for (const Patch<D>& patch : grid.patches) {
-    if (!patch.keeps) continue;
+struct PartsOfSum {
+  NodeOfBody<D> of;
+  std::span<const Part<D>> parts{};
+  std::int32_t number = -1;
+};
+template <int D>
+std::vector<PartsOfSum<D>> by_sum(const std::vector<Part<D>>& parts) {
+  std::vector<PartsOfSum<D>> sums;
+  for (std::size_t begin = 0, end = 0; begin < parts.size(); begin = end) {
+    while (end < parts.size() && parts[end].of == parts[begin].of) ++end;
+    sums.push_back({parts[begin].of, std::span(parts).subspan(begin, end - begin)});
+  }
+  return sums;
+}
+
+/// The sums that patches here need, and where forces act in the place of nodes beyond walls.
+template <int D>
+void make_sums(const TileGrid<D>& grid, const PatchesOfNodes<D>& patches,
+               const std::vector<Part<D>>& parts, SumsOfNodes<D>& made,
+               Lists<ForceBeyond<D>>* beyond) {
+  std::vector<PartsOfSum<D>> sums = by_sum(parts);
+  const auto body_of = [](const PartsOfSum<D>& sum) { return sum.of.body; };
+  std::vector<const PartsOfSum<D>*> here;
+  for (const auto& kept : patches.all) {
+    const Patch<D>& patch = grid.patches[kept.patch];
+    const auto own = std::ranges::equal_range(sums, patch.body, {}, body_of);
     for (int n = 0; n < patch.shape.node_count; ++n) {
       const NodeOfBody<D> node{patch.body, index_of(grid, patch, n)};
-      const auto of = std::ranges::equal_range(list, node, {}, &Lists<D>::Of::node);
-      if (!of.empty()) here.push_back(node);
-      for (const auto& one : of) givers.push_back(one.other);
+      const auto at = std::ranges::lower_bound(own, node, {}, &PartsOfSum<D>::of);
+      if (at == own.end() || at->of != node) continue;
+      if (at->number < 0) {
+        at->number = static_cast<std::int32_t>(here.size());
+        here.push_back(&*at);
+      }
+      made.nodes.all.push_back({n, static_cast<std::uint32_t>(at->number)});
     }
+    made.nodes.end_list();
   }
-}
-
-template <int D>
-void make_lists(const TileGrid<D>& grid, const Lists<D>& lists, Followers<D>& made) {
-  std::vector<NodeOfBody<D>>&following = made.following.nodes, &leading = made.leading.nodes;
-  add_nodes_here(grid, lists.by_leading, leading, following);
-  add_nodes_here(grid, lists.by_following, following, leading);
-  keep_once(following);
-  keep_once(leading);
-  for (std::uint32_t p = 0; p < grid.patches.size(); ++p) {
-    const Patch<D>& patch = grid.patches[p];
-    if (!patch.keeps) continue;
-    std::vector<NodeLinks> leads, follows;
-    std::vector<NodeLink<D>> to_leading, to_following;
-    add_links(grid, patch, lists.by_leading, following, leads, to_leading);
-    add_links(grid, patch, lists.by_following, leading, follows, to_following);
-    if (leads.empty() && follows.empty()) continue;
-    made.patches.all.push_back({patch.body, patch.tile, p});
-    made.leads.push_back(std::move(leads));
-    made.follows.push_back(std::move(follows));
-    made.to_leading.push_back(std::move(to_leading));
-    made.to_following.push_back(std::move(to_following));
+  std::vector<NodeOfBody<D>>& givers = made.from.nodes;
+  for (const PartsOfSum<D>* sum : here)
+    for (const Part<D>& part : sum->parts) givers.push_back({part.of.body, part.from});
+  std::ranges::sort(givers);
+  const auto again = std::ranges::unique(givers);
+  givers.erase(again.begin(), again.end());
+  givers.shrink_to_fit();
+  for (const PartsOfSum<D>* sum : here) {
+    for (const Part<D>& part : sum->parts) {
+      const NodeOfBody<D> from{part.of.body, part.from};
+      const auto at = std::ranges::lower_bound(givers, from) - givers.begin();
+      made.shares.all.push_back({part.share, static_cast<std::uint32_t>(at), part.turned});
+    }
+    made.shares.end_list();
   }
-  plan(made.following, made.patches, grid);
-  plan(made.leading, made.patches, grid);
+  made.nodes.shrink();
+  made.shares.shrink();
+  plan(made.from, patches, grid);
+  if (beyond == nullptr) return;
+  for (std::size_t k = 0; k < patches.all.size(); ++k) {
+    for (const SumAtNode& at : made.nodes[k]) {
+      if (!grid.patches[patches.all[k].patch].counts(at.node)) continue;
+      const std::span<const NodeShare> shares = made.shares[at.sum];
+      for (std::size_t j = 0; j < shares.size(); ++j)
+        if (shares[j].turned != 0)
+          beyond->all.push_back({at.node, shares[j], here[at.sum]->parts[j].beyond});
+    }
+    beyond->end_list();
+  }
 }
 
 /// Masses of those who follow go to those who lead, (E2).
@@ -213,7 +218,12 @@ void find_followers(Domain<D>& domain, bool at_start) {
   const std::vector<Follower<D>> all = all_followers(domain, at_start);
   if (all.empty()) return;  // alike on all ranks
   domain.followers.exist = true;
-  make_lists(domain.grid, Lists<D>(all), domain.followers);
+  Followers<D>& made = domain.followers;
+  for (std::uint32_t p = 0; p < domain.grid.patches.size(); ++p)
+    if (const Patch<D>& patch = domain.grid.patches[p]; patch.keeps)
+      made.patches.all.push_back({patch.body, patch.tile, p});
+  make_sums(domain.grid, made.patches, parts_of(all, true), made.given, &made.beyond);
+  make_sums<D>(domain.grid, made.patches, parts_of(all, false), made.taken, nullptr);
   if (at_start) give_masses(domain.grid, all);
 }
 

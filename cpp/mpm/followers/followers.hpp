@@ -10,37 +10,58 @@
 // which is the linear field that meets theirs best: sum e = 1, sum e X_i = X_j, so that all motions
 // that are linear in the body are met exactly. Mass and force of j are given to i by the transpose,
 //   m_i += sum_j e_ji m_j,   f_i += sum_j e_ji f_j,                                          (E2)
-// which keeps momentum, moments and power. A cell is the box about a node.
-#include <cstdint>
-#include <vector>
-
+// which keeps momentum, moments and power. Near are those within a diagonal of a cell, or, until
+// they determine the field, the square root of two, twice, three times of it. A cell is the box
+// about a node.
+#include "mpm/fields/lists.hpp"
 #include "mpm/followers/node_table.hpp"
 
 namespace mpm {
 
-/// A share of the motion of one node in that of another, or of its force in the other's.
-template <int D>
-struct NodeLink {
-  std::uint32_t from = 0;   // of the table of those who give
-  double share = 0.0;       // e
-  std::uint8_t turned = 0;  // components of vectors that a wall turns between the two, a bit each
-  Index<D> beyond{};        // the one who leads, where it lies: maybe beyond a wall
+/// A node's part in a sum of others'.
+struct NodeShare {
+  double share = 0.0;        // e
+  std::uint32_t from = 0;    // of the table of those who give
+  std::uint32_t turned = 0;  // components of vectors that a wall turns between the two, a bit each
 };
-/// Those of a node of a block.
-struct NodeLinks {
+/// A node of a block, and the sum that is for it.
+struct SumAtNode {
   std::int32_t node = 0;
-  std::uint32_t first = 0, count = 0;
+  std::uint32_t sum = 0;
+};
+
+/// Sums of what some nodes give, each for another node of the same body: for all of those that
+/// patches here have, counted there or not.
+template <int D>
+struct SumsOfNodes {
+  NodeTable<D> from;
+  Lists<NodeShare> shares;  // of each sum
+  std::vector<Vec<double, D>> sums;
+  Lists<SumAtNode> nodes;  // by place in Followers::patches
+
+  std::size_t bytes() const {
+    return from.bytes() + shares.bytes() + bytes_of(sums) + nodes.bytes();
+  }
+};
+
+/// A share of a force that acts on a node in the place of one beyond walls, which leads.
+template <int D>
+struct ForceBeyond {
+  std::int32_t node = 0;  // counted by the patch
+  NodeShare of;
+  Index<D> beyond{};
 };
 
 template <int D>
 struct Followers {
-  PatchesOfNodes<D> patches;        // that have any of them
-  NodeTable<D> following, leading;  // their forces; their motions
-  // By place in `patches`: who leads, and follows, there.
-  std::vector<std::vector<NodeLinks>> leads, follows;
-  std::vector<std::vector<NodeLink<D>>> to_leading, to_following;
-
+  PatchesOfNodes<D> patches;     // that have any of them
+  SumsOfNodes<D> given, taken;   // (E2), for who leads; (E1), for who follows
+  Lists<ForceBeyond<D>> beyond;  // by place in `patches`
   bool exist = false;  // on any rank: those without take part in what ranks tell each other
+
+  std::size_t bytes() const {
+    return bytes_of(patches.all) + given.bytes() + taken.bytes() + beyond.bytes();
+  }
 };
 
 }  // namespace mpm

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mpm/comm/comm.hpp"
+#include "mpm/fields/lists.hpp"
 #include "mpm/grid/tile_grid.hpp"
 #include "mpm/parallel/threads.hpp"
 
@@ -49,6 +50,12 @@ struct NodeTable {
   std::vector<Partner> partners;
   std::vector<Vec<double, D>> values;
   Mail mail;
+
+  std::size_t bytes() const {
+    std::size_t all = bytes_of(nodes) + bytes_of(places) + bytes_of(values);
+    for (const Partner& partner : partners) all += bytes_of(partner.give) + bytes_of(partner.take);
+    return all;
+  }
 };
 
 /// Find where the nodes of a table are, which is in order, and who tells whom of those of other

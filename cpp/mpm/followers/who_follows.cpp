@@ -73,37 +73,40 @@ bool solve(std::array<std::array<double, D + 1>, D + 1> moments, std::array<doub
   return true;
 }
 
-/// (E1); none if too few lead near it.
+/// (E1), by those within the least of four distances that are enough; none if there are none.
 template <int D>
 std::vector<Led<D>> leaders_of(const BodyOfNodes<D>& body,
                                const std::type_identity_t<Index<D>>& node) {
-  constexpr int farthest = 3;
-  for (int range = 2; range <= farthest; ++range) {
+  using Numbers = std::array<double, D + 1>;
+  const auto away = [&](const Index<D>& i) {
+    Numbers x{1.0};
+    for (std::size_t a = 0; a < D; ++a) x[a + 1] = i[a] - node[a];
+    return x;
+  };
+  const auto squared = [](const Numbers& x) {
+    double square = 0.0;
+    for (std::size_t a = 1; a <= D; ++a) square += x[a] * x[a];
+    return square;
+  };
+  for (const int times : {1, 2, 4, 9}) {
     std::vector<Led<D>> led;
-    std::array<std::array<double, D + 1>, D + 1> moments{};
-    const auto away = [&](const Index<D>& i) {
-      std::array<double, D + 1> x{1.0};
-      for (std::size_t a = 0; a < D; ++a) x[a + 1] = i[a] - node[a];
-      return x;
-    };
-    const auto weight = [&](const std::array<double, D + 1>& x) {
-      double square = 0.0;
-      for (std::size_t a = 1; a <= D; ++a) square += x[a] * x[a];
-      return 1.0 / (square * square);
-    };
-    body.for_each_around(node, range, [&](const Index<D>& i) {
-      if (i == node || !body.leads(i)) return;
+    std::array<Numbers, D + 1> moments{};
+    const double farthest = times * D;
+    body.for_each_around(node, static_cast<int>(std::sqrt(farthest)), [&](const Index<D>& i) {
+      const Numbers x = away(i);
+      const double square = squared(x);
+      if (i == node || square > farthest || !body.leads(i)) return;
       const auto image = body.walls.image(i);
       led.push_back({image ? image->node : i, i, 0.0, image ? image->turned : 0u});
-      const auto x = away(i);
       for (std::size_t r = 0; r <= D; ++r)
-        for (std::size_t s = 0; s <= D; ++s) moments[r][s] += weight(x) * x[r] * x[s];
+        for (std::size_t s = 0; s <= D; ++s) moments[r][s] += x[r] * x[s] / (square * square);
     });
-    std::array<double, D + 1> c;
+    Numbers c;
     if (!solve<D>(moments, c)) continue;
     for (Led<D>& one : led) {
-      const auto x = away(one.beyond);
-      for (std::size_t r = 0; r <= D; ++r) one.share += weight(x) * x[r] * c[r];
+      const Numbers x = away(one.beyond);
+      const double square = squared(x);
+      for (std::size_t r = 0; r <= D; ++r) one.share += x[r] * c[r] / (square * square);
     }
     return led;
   }

@@ -36,10 +36,11 @@ struct Followers {
     };
     for (const auto& [j, node] : body.nodes) {
       if (step.walls.image(j) || leads(j)) continue;
-      for (const int range : {2, 3}) {
+      for (const double farthest : {1.0, std::sqrt(2.0), 2.0, 3.0}) {  // in diagonals of a cell
         std::vector<Index<D>> near;
-        around(j, range, [&](const Index<D>& i) {
-          if (leads(i)) near.push_back(i);
+        around(j, 5, [&](const Index<D>& i) {
+          const Vec<double, D> x = away(i, j);
+          if (i != j && norm(x) < 1.0001 * std::sqrt(D) * farthest && leads(i)) near.push_back(i);
         });
         if (std::vector<double> e; linear(j, near, e)) {
           for (std::size_t k = 0; k < near.size(); ++k)
@@ -102,6 +103,11 @@ struct Followers {
     }
     for_each_index<D>(low, high, f);
   }
+  static Vec<double, D> away(const Index<D>& i, const Index<D>& from) {
+    Vec<double, D> x;
+    for (std::size_t a = 0; a < D; ++a) x[static_cast<int>(a)] = i[a] - from[a];
+    return x;
+  }
   static Index<D> nearest(const Step<D>& step, const Vec<double, D>& x) {
     Index<D> i;
     for (int a = 0; a < D; ++a)
@@ -139,16 +145,8 @@ struct Followers {
   static bool linear(const Index<D>& j, const std::vector<Index<D>>& near, std::vector<double>& e) {
     constexpr int n = D + 1;
     double A[n][n + 1] = {};
-    const auto x = [&](const Index<D>& i, int k) {
-      return k == 0 ? 1.0
-                    : static_cast<double>(i[static_cast<std::size_t>(k - 1)] -
-                                          j[static_cast<std::size_t>(k - 1)]);
-    };
-    const auto w = [&](const Index<D>& i) {
-      double square = 0.0;
-      for (int k = 1; k < n; ++k) square += x(i, k) * x(i, k);
-      return std::pow(square, -2.0);
-    };
+    const auto x = [&](const Index<D>& i, int k) { return k == 0 ? 1.0 : away(i, j)[k - 1]; };
+    const auto w = [&](const Index<D>& i) { return std::pow(norm(away(i, j)), -4.0); };
     A[0][n] = 1.0;
     for (const Index<D>& i : near)
       for (int r = 0; r < n; ++r)

@@ -114,7 +114,7 @@ Bytes bytes_of(const Simulation<D>& simulation) {
   Bytes r;
   for (const ParticlePool<D>& of : domain.pools) r.particles += of.bytes();
   r.particles += domain.list_scratch.bytes();
-  r.grid = bytes_of(domain.grid);
+  r.grid = bytes_of(domain.grid) + domain.followers.bytes();
   if (domain.has_contact()) r.contact = bytes_of(domain.contact);
   r.contact += bytes_of_surfaces(domain.surfaces);
   r.other = domain.sums.capacity() * sizeof(PatchSums<D>) + simulation.history.bytes() +
