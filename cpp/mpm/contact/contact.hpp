@@ -110,14 +110,13 @@ struct Contact {
 /// Memory that it holds [bytes].
 template <int D>
 std::size_t bytes_of(const Contact<D>& contact) {
-  const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   std::size_t parts = 0;
   for (const ContactPart<D>& part : contact.parts) parts += part.bytes();
-  for (const auto& touches : contact.touches) parts += size(touches);
+  for (const auto& touches : contact.touches) parts += bytes_of(touches);
   return contact.masses.bytes() + parts + contact.cache.bytes() + contact.records.bytes() +
-         size(contact.around) + size(contact.touches) + size(contact.surface_ranges) +
-         size(contact.sorted_tiles) + size(contact.holders) + size(contact.tiles) +
-         size(contact.last_tiles) + size(contact.rigid_share);
+         bytes_of(contact.around) + bytes_of(contact.touches) + bytes_of(contact.surface_ranges) +
+         bytes_of(contact.sorted_tiles) + bytes_of(contact.holders) + bytes_of(contact.tiles) +
+         bytes_of(contact.last_tiles) + bytes_of(contact.rigid_share);
 }
 
 /// Drop the overlapped nodes of the last step, which name tiles by their numbers.

@@ -6,6 +6,7 @@
 
 #include "mpm/contact/contact_node.hpp"
 #include "mpm/contact/pair_records.hpp"
+#include "mpm/fields/lists.hpp"
 
 namespace mpm {
 
@@ -125,10 +126,9 @@ struct ContactPart {
   }
 
   std::size_t bytes() const {
-    const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-    return sizeof(*this) + size(nodes) + size(sides) + size(pairs) + size(further_places) +
-           size(shares) + size(cached_nodes) + size(last_cached_nodes) + size(cached) +
-           size(last_cached);
+    return sizeof(*this) + bytes_of(nodes) + bytes_of(sides) + bytes_of(pairs) +
+           bytes_of(further_places) + bytes_of(shares) + bytes_of(cached_nodes) +
+           bytes_of(last_cached_nodes) + bytes_of(cached) + bytes_of(last_cached);
   }
 
  private:

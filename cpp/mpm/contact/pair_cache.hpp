@@ -25,8 +25,7 @@ struct PairCache {
            displacement[static_cast<std::size_t>(sides[pair.s].body)];
   }
   std::size_t bytes() const {
-    return (displacement.capacity() + fastest.capacity()) * sizeof(double) +
-           moving.capacity() * sizeof(int);
+    return bytes_of(displacement) + bytes_of(fastest) + bytes_of(moving);
   }
 };
 

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "mpm/contact/settings.hpp"
+#include "mpm/fields/lists.hpp"
 
 namespace mpm {
 namespace {
@@ -217,8 +218,7 @@ void PairRecords::check_restored(std::size_t bodies, bool keep) {
 }
 
 std::size_t PairRecords::bytes() const {
-  return records_.capacity() * sizeof(PairRecord) + sums_.capacity() * sizeof(PairSums) +
-         places_.capacity() * sizeof(places_[0]);
+  return bytes_of(records_) + bytes_of(sums_) + bytes_of(places_);
 }
 
 }  // namespace mpm

@@ -112,7 +112,7 @@ class NodesWithMass {
     return nodes;
   }
 
-  std::size_t bytes() const { return bits_.capacity() * sizeof(std::uint64_t); }
+  std::size_t bytes() const { return bytes_of(bits_); }
 
  private:
   std::size_t words_ = 0;  // of a patch

@@ -7,8 +7,8 @@
 
 namespace mpm {
 
-template <class T>
-std::size_t bytes_of(const std::vector<T>& values) {
+template <class T, class Allocator>
+std::size_t bytes_of(const std::vector<T, Allocator>& values) {
   return values.capacity() * sizeof(T);
 }
 

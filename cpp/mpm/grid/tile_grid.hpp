@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mpm/comm/all_sums.hpp"
+#include "mpm/fields/lists.hpp"
 #include "mpm/grid/geometry.hpp"
 #include "mpm/grid/node_memory.hpp"
 #include "mpm/grid/outflow_box.hpp"
@@ -78,7 +79,7 @@ std::size_t all_patches(const TileGrid<D>& grid) {
 template <int D>
 std::size_t bytes_of(const TileGrid<D>& grid) {
   return grid.nodes.numbers.bytes() + grid.kept.numbers.bytes() + grid.shared.entries.bytes() +
-         grid.shared.aside.bytes() + grid.patches.capacity() * sizeof(Patch<D>);
+         grid.shared.aside.bytes() + bytes_of(grid.patches);
 }
 
 }  // namespace mpm

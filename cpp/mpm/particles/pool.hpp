@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mpm/fields/columns.hpp"
+#include "mpm/fields/lists.hpp"
 #include "mpm/grid/patch.hpp"
 #include "mpm/loads/surface_load.hpp"
 #include "mpm/materials/material_block.hpp"
@@ -87,9 +88,8 @@ struct ParticlePool {
     return {order.data() + patch.begin, patch.count};
   }
   std::size_t bytes() const {
-    return columns.bytes() +
-           (id.capacity() + piece.capacity() + order.capacity()) * sizeof(std::uint32_t) +
-           removed.capacity() * sizeof(RemovedRow) + free_rows.capacity() * sizeof(std::uint32_t);
+    return columns.bytes() + bytes_of(id) + bytes_of(piece) + bytes_of(order) + bytes_of(removed) +
+           bytes_of(free_rows);
   }
 };
 

@@ -50,15 +50,14 @@ double second_order_of(const Step<D>& step, double at, double out, double part) 
 
 /// f(i, W) with GIMP and quadratic B-splines: N_ip + d . grad N_ip + sum_k b_k d2N_ip/dx_k^2, d the
 /// way from the particle to a place; `out`, the way from the particle out of the body, is d for the
-/// middle of a piece. At edges b fades as the face leans from an axis.
+/// middle of a piece.
 template <int D, class F>
 void for_each_node_at(const Step<D>& step, const Vec<double, D>& particle, const Vec<double, D>& d,
-                      const Vec<double, D>& out, bool at_edge, F&& f) {
+                      const Vec<double, D>& out, F&& f) {
   Vec<double, D> b = Vec<double, D>::zero();
   for (int k = 0; k < D; ++k) {
     const double part = dot(out, out) > 0.0 ? out[k] * out[k] / dot(out, out) : 0.0;
     b[k] = second_order_of(step, particle[k] / step.h, out[k] / step.h, part);
-    if (at_edge) b[k] *= std::max(4.0 * part - 3.0, 0.0);
   }
   step.for_each_node(particle, [&](const Index<D>& i, double N, const Vec<double, D>& dN) {
     double W = N + dot(d, dN);
@@ -85,7 +84,7 @@ void for_each_loaded_node(const Step<D>& step, const Vec<double, D>& particle,
       const double u = particle[k] / step.h - std::floor(particle[k] / step.h + 0.5);
       d[k] = step.h * std::clamp(middle[k] / step.h, -1.0 - u, 1.0 - u);
     }
-    for_each_node_at(step, particle, d, d, false, f);
+    for_each_node_at(step, particle, d, d, f);
   } else {
     for_each_hat_node(step, particle, middle, f);
   }

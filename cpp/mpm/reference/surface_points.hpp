@@ -2,7 +2,6 @@
 // Contact points on the surfaces of bodies, in the reference step
 // (docs/theory/surface-contact.md): each knows its host, and by that its place, its velocity and
 // the nodes on which a force acts.
-#include <set>
 
 #include "mpm/reference/kept_nodes.hpp"
 #include "mpm/reference/prescribed.hpp"
@@ -25,23 +24,12 @@ struct ContactPoint {
   Vec<double, D> out() const { return dot(d, N) * N; }
 };
 
-/// Hosts with points of faces that meet at an edge.
-template <int D>
-std::set<std::size_t> hosts_at_edges(const std::vector<ContactPoint<D>>& points) {
-  std::set<std::size_t> hosts;
-  for (const ContactPoint<D>& p : points)
-    for (const ContactPoint<D>& q : points)
-      if (p.host == q.host && dot(p.N, q.N) < 0.9) hosts.insert(p.host);
-  return hosts;
-}
-
 /// A body with points on its surface, and what acts on it in the coming step.
 template <int D>
 struct SurfaceBody {
   KeptNodes<D>* kept = nullptr;  // on nodes of its own, or else
   Body<D>* whole = nullptr;      // one that does not deform
   std::vector<ContactPoint<D>> points{};
-  std::set<std::size_t> at_edges{};                           // hosts of points of several faces
   std::map<Index<D>, Vec<double, D>> f{};                     // on its nodes [N]
   Vector3 force = Vector3::zero(), moment = Vector3::zero();  // on it as a whole, about 0
   double stored_push = 0.0, stored_rub = 0.0;                 // in springs of its points [J]
@@ -85,7 +73,7 @@ struct SurfaceBody {
   template <class F>
   void for_each_node(const ContactPoint<D>& c, const Vec<double, D>& r, F&& f) const {
     const Vec<double, D>& X = body().particles[c.host].X;
-    for_each_node_at(kept->step, X, r, c.out(), at_edges.contains(c.host), f);
+    for_each_node_at(kept->step, X, r, c.out(), f);
   }
   /// From the host of a point to the place in the body at the start that is at x.
   Vec<double, D> reach(const ContactPoint<D>& c, const Vec<double, D>& x) const {

@@ -33,7 +33,6 @@ struct Surfaces {
   /// Before the first step: what lies in others is set back, so that springs just begin.
   void start() {
     for (SurfaceBody<D>& b : bodies) {
-      b.at_edges = hosts_at_edges(b.points);
       for (ContactPoint<D>& c : b.points) b.place(c);
     }
     for_each_touch([&](const SurfaceTouch<D>& t) {

@@ -37,7 +37,7 @@ class HistoryRows {
   bool plausible() const {
     return values_.size() % history_terms.size() == 0 && values_.size() <= most;
   }
-  std::size_t bytes() const { return values_.capacity() * sizeof(double); }
+  std::size_t bytes() const { return bytes_of(values_); }
 
  private:
   static constexpr std::size_t most = (capacity + 1) * history_terms.size();

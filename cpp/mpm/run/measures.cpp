@@ -92,18 +92,19 @@ namespace {
 
 template <int D>
 std::size_t bytes_of_surfaces(const Surfaces<D>& surfaces) {
-  const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  std::size_t parts = size(surfaces.parts);
+  std::size_t parts = bytes_of(surfaces.parts);
   for (const SurfacePart<D>& part : surfaces.parts)
-    parts += size(part.touches) + size(part.kept) + size(part.kept_next) + size(part.near_of) +
-             size(part.awake_of) + size(part.awake) + size(part.near) + size(part.felt);
-  return parts + size(surfaces.part_of) + size(surfaces.hosts) + size(surfaces.points) +
-         size(surfaces.places) + size(surfaces.bonds) + size(surfaces.on_bodies) +
-         size(surfaces.moving) + size(surfaces.between_parts) + size(surfaces.on_bodies_by_part) +
-         size(surfaces.others.hosts) + size(surfaces.others.places_at_start) +
-         size(surfaces.set_back) + size(surfaces.places_of_lists) + size(surfaces.in_touch) +
-         size(surfaces.place_of_motion) + size(surfaces.between) + size(surfaces.on_hosts) +
-         size(surfaces.place_on_hosts);
+    parts += bytes_of(part.touches) + bytes_of(part.kept) + bytes_of(part.kept_next) +
+             bytes_of(part.near_of) + bytes_of(part.awake_of) + bytes_of(part.awake) +
+             bytes_of(part.near) + bytes_of(part.felt);
+  return parts + bytes_of(surfaces.part_of) + bytes_of(surfaces.hosts) + bytes_of(surfaces.points) +
+         bytes_of(surfaces.places) + bytes_of(surfaces.bonds) + bytes_of(surfaces.on_bodies) +
+         bytes_of(surfaces.moving) + bytes_of(surfaces.between_parts) +
+         bytes_of(surfaces.on_bodies_by_part) + bytes_of(surfaces.others.hosts) +
+         bytes_of(surfaces.others.places_at_start) + bytes_of(surfaces.set_back) +
+         bytes_of(surfaces.places_of_lists) + bytes_of(surfaces.in_touch) +
+         bytes_of(surfaces.place_of_motion) + bytes_of(surfaces.between) +
+         bytes_of(surfaces.on_hosts) + bytes_of(surfaces.place_on_hosts);
 }
 
 }  // namespace
@@ -117,9 +118,8 @@ Bytes bytes_of(const Simulation<D>& simulation) {
   r.grid = bytes_of(domain.grid) + domain.followers.bytes();
   if (domain.has_contact()) r.contact = bytes_of(domain.contact);
   r.contact += bytes_of_surfaces(domain.surfaces);
-  r.other = domain.sums.capacity() * sizeof(PatchSums<D>) + simulation.history.bytes() +
-            domain.part_energies.capacity() * sizeof(PartEnergies) +
-            domain.face_parts.capacity() * sizeof(FaceImpulses<D>);
+  r.other = bytes_of(domain.sums) + simulation.history.bytes() + bytes_of(domain.part_energies) +
+            bytes_of(domain.face_parts);
   for (std::size_t* bytes : {&r.particles, &r.grid, &r.contact, &r.other})
     *bytes = static_cast<std::size_t>(
         all_sum(*domain.grid.partition.comm, static_cast<std::int64_t>(*bytes)));

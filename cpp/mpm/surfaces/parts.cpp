@@ -31,30 +31,17 @@ struct PieceOfSurface {
   std::vector<Host<D>> hosts{};  // of own ones
 };
 
-/// Does a particle carry points of faces that meet at an edge? Those without an area are of others.
-template <int D>
-bool is_at_edge(std::span<const GivenPoint<D>> points) {
-  constexpr double round = 0.9;  // Cosine between normals of a round surface, at least.
-  for (const GivenPoint<D>& p : points)
-    for (const GivenPoint<D>& q : points)
-      if (p.area > 0.0 && q.area > 0.0 && dot(p.normal, q.normal) < round) return true;
-  return false;
-}
-
 /// b of a point, by how far its surface is from its host along the normal: along the surface the
-/// sum over particles is what it should be. At an edge it fades as the face leans, (4 N_k^2 - 3)_+:
-/// nodes beyond a turned edge are too light for it.
+/// sum over particles is what it should be.
 template <int D>
 Vec<double, D> second_order_of(const Domain<D>& domain, const Patch<D>& patch, const Host<D>& host,
-                               const GivenPoint<D>& point, bool at_edge) {
+                               const GivenPoint<D>& point) {
   const double h = domain.grid.cell_size, away = dot(point.offset, point.normal) / h;
   Vec<double, D> second = Vec<double, D>::zero();
   with_basis(domain.grid, domain.body_of(patch), [&]<BasisModel B>(const B& basis) {
     if constexpr (ActsOnFaces<B>)
       second = h * h * second_order_of(basis, host.xi, away * point.normal);
   });
-  for (int a = 0; a < D && at_edge; ++a)
-    second[a] *= std::max(4.0 * point.normal[a] * point.normal[a] - 3.0, 0.0);
   return second;
 }
 
@@ -72,14 +59,13 @@ PieceOfSurface<D> piece_of_patch(const Domain<D>& domain, const Patch<D>& patch,
     const auto own = std::ranges::equal_range(of_body, pool.id[row], {}, &GivenPoint<D>::particle);
     if (own.empty()) return;
     make_host();
-    const bool at_edge = is_at_edge<D>({own.begin(), own.end()});
     for (const GivenPoint<D>& point : own)
       piece.points.push_back(
           {static_cast<std::uint32_t>(&point - domain.surfaces.given.data()),
            static_cast<std::uint32_t>(piece.hosts.size() - 1),
            pool.position_of(row) + point.offset - (0.5 * domain.surfaces.spacing) * point.normal,
            as_one ? Vec<double, D>::zero()
-                  : second_order_of(domain, patch, piece.hosts.back(), point, at_edge)});
+                  : second_order_of(domain, patch, piece.hosts.back(), point)});
   };
   if (as_one) {
     for (const std::uint32_t row : pool.rows(patch)) add(row, [] {});
