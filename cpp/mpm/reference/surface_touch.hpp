@@ -47,7 +47,8 @@ struct Height {
   template <class T>
   T zeta(const T& S) const {
     const T square = R * R - a * a * std::pow(S / S_1, 1.0 / m);
-    return std::sqrt(std::real(square) > 0.01 ? square : T(0.01));
+    // The tangent of the root at .3, deeper.
+    return std::real(square) > 0.09 ? std::sqrt(square) : 0.3 + (square - 0.09) / 0.6;
   }
 
   /// Of J_m(x), which is x^m times the integral of cos(x sin t) cos(t)^2m over -pi/2 < t < pi/2

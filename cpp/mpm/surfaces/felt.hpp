@@ -2,10 +2,12 @@
 // How deep a point p lies in the surface of another body, after the sum of decision 0054, by the
 // body's contact points q of areas A_q, e / 2 under the surface and e apart, e / 2 in 2D:
 //   S = sum_q a_q w_q,  w_q = (1 - |x_q - x_p|^2 / (R e)^2)^n,  a_q = A_q / e^(D - 1),
-//   zeta = sqrt(R^2 - a^2 (S / S_1)^(1 / m)),  o = e - b - e zeta,                           (S3)
+//   zeta = z(R^2 - a^2 (S / S_1)^(1 / m)),  o = e - b - e zeta,                              (S3)
+//   z(s) = sqrt(s) from .3^2 on, and its tangent there below,
 // with a^2 = R^2 - 1, m = n + (D - 1) / 2, and S_1 the sum at the height of e over points all
 // around. The forces follow from the energy k o^2 / 2: on q - k o do/dx_q, on p the sum of their
-// opposites.
+// opposites. Where points lie closer than drawn the root ends before the layers of points meet, and
+// would be steep there.
 //
 // The longest waves that a lattice of points has in S vanish at zeros of the Bessel function J_m at
 // 2 pi a. The second is taken here, and not the first as there: points of a sphere are no lattice,
@@ -31,8 +33,9 @@ class SurfacePoint {
 
   explicit SurfacePoint(double sum) {
     const double share = a2 * std::pow(sum / at_edge(), 1.0 / m);
-    zeta = std::sqrt(std::max(reach_squared - share, least_zeta_squared));
-    by_sum = -share / (2.0 * zeta * m * sum);
+    const double square = reach_squared - share, root = std::sqrt(std::max(square, deep * deep));
+    zeta = root + std::min(square - deep * deep, 0.0) / (2.0 * deep);
+    by_sum = -share / (2.0 * root * m * sum);
   }
   double zeta, by_sum;  // and its derivative with respect to S
 
@@ -57,8 +60,7 @@ class SurfacePoint {
   static constexpr double a = zero / (2.0 * std::numbers::pi), a2 = a * a;
   static constexpr double reach_squared = 1.0 + a2, m = n + 0.5 * (D - 1);  // R^2
   static_assert(reach * reach >= reach_squared && reach * reach < 1.001 * reach_squared);
-  // Deeper than this zeta the overlap stays as it is, and the force is the gradient of no energy.
-  static constexpr double least_zeta_squared = 0.01;
+  static constexpr double deep = 0.3;  // zeta, from which on it follows the tangent
 
   template <int exponent, class T>
   static constexpr T power_of(T x) {
