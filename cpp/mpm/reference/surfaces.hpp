@@ -89,7 +89,7 @@ struct Surfaces {
     if (!is_face(t.whom)) c = std::min(c, waves(other(t)));
     if (const auto before = approaches.find(pair_of(t)); before != approaches.end())
       approach = std::max(approach, before->second);
-    return step.h * std::min(approach / c, 0.05);
+    return step.h * std::min(approach / c, 0.2);
   }
 
   double height_over(Whom face, double x) const {
@@ -115,7 +115,7 @@ struct Surfaces {
     for_each_touch([&](SurfaceTouch<D> t) {
       const auto b = set_back.find({t.body, t.point, t.whom});
       if (b != set_back.end()) t.b = b->second;
-      if (overlap(t) > -0.5 * 0.05 * step.h) f(t);
+      if (overlap(t) > -0.5 * 0.2 * step.h) f(t);
     });
   }
 

@@ -1,9 +1,12 @@
 #include "mpm/surfaces/approaches.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "mpm/comm/letters.hpp"
+#include "mpm/surfaces/law.hpp"
 
 namespace mpm {
 namespace {
@@ -14,13 +17,44 @@ Approach as_pair(int body, Opposite opposite, double speed) {
   return {opposite, body, speed};
 }
 
-}  // namespace
+/// How fast waves are in a body at the start [m/s]; without end in one that does not deform.
+template <int D>
+double waves_of(const Domain<D>& domain, int body) {
+  const Body<D>& of = domain.body_at(body);
+  return std::sqrt(of.stiffness / of.initial_density);
+}
 
+/// The fastest so far of a body and an opposite; 0 if they have not touched [m/s].
 template <int D>
 double fastest_approach(const Surfaces<D>& surfaces, int body, Opposite opposite) {
   const Approach wanted = as_pair(body, opposite, 0.0);
   const auto at = std::ranges::lower_bound(surfaces.approaches, wanted, std::less<>{});
   return at != surfaces.approaches.end() && !(wanted < *at) ? at->speed : 0.0;
+}
+
+}  // namespace
+
+template <int D>
+double onset_of(const Domain<D>& domain, const SurfacePart<D>& part, Opposite opposite,
+                double approach) {
+  double waves = waves_of(domain, part.body);
+  if (!is_face(opposite)) waves = std::min(waves, waves_of(domain, opposite));
+  const double fastest = std::max(approach, fastest_approach(domain.surfaces, part.body, opposite));
+  return domain.grid.cell_size * std::min(fastest / waves, most_onset);
+}
+
+template <int D>
+void bound_onsets(Domain<D>& domain) {
+  Surfaces<D>& surfaces = domain.surfaces;
+  double farthest = 0.0, waves = std::numeric_limits<double>::infinity(), fastest = 0.0;
+  for (const SurfacePart<D>& part : surfaces.parts) {
+    farthest = std::max(farthest, part.farthest_step);
+    waves = std::min(waves, waves_of(domain, part.body));
+  }
+  for (const Approach& one : surfaces.approaches) fastest = std::max(fastest, one.speed);
+  // Both surfaces may move, and the overlap may change by more than they do.
+  fastest = std::max(fastest, 3.0 * std::sqrt(farthest) / domain.time_step);
+  surfaces.longest_onset = domain.grid.cell_size * fastest / waves;
 }
 
 template <int D>
@@ -44,8 +78,10 @@ void learn_approaches(Domain<D>& domain) {
   all.erase(again.begin(), again.end());
 }
 
-template double fastest_approach<2>(const Surfaces<2>&, int, Opposite);
-template double fastest_approach<3>(const Surfaces<3>&, int, Opposite);
+template double onset_of<2>(const Domain<2>&, const SurfacePart<2>&, Opposite, double);
+template double onset_of<3>(const Domain<3>&, const SurfacePart<3>&, Opposite, double);
+template void bound_onsets<2>(Domain<2>&);
+template void bound_onsets<3>(Domain<3>&);
 template void learn_approaches<2>(Domain<2>&);
 template void learn_approaches<3>(Domain<3>&);
 

@@ -5,9 +5,15 @@
 
 namespace mpm {
 
-/// The fastest so far of a body and an opposite; 0 if they have not touched [m/s].
+/// The way over which the spring of a touch begins at which the surfaces approach each other so
+/// fast, w of (S4) [m].
 template <int D>
-double fastest_approach(const Surfaces<D>& surfaces, int body, Opposite opposite);
+double onset_of(const Domain<D>& domain, const SurfacePart<D>& part, Opposite opposite,
+                double approach);
+
+/// Surfaces::longest_onset, by how far points have moved in the step.
+template <int D>
+void bound_onsets(Domain<D>& domain);
 
 /// Learn of those of the touches that have begun in the step, SurfacePart::begun, of all ranks.
 template <int D>

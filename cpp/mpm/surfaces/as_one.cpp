@@ -7,8 +7,9 @@ namespace mpm {
 template <int D>
 void move_points_as_one(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
-  for (const SurfacePart<D>& part : surfaces.parts) {
+  for (SurfacePart<D>& part : surfaces.parts) {
     if (!part.as_one) continue;
+    part.farthest_step = 0.0;
     const Body<D>& body = domain.body_at(part.body);
     if (body.is_prescribed() ? !body.motion->moves : body.active() == 0) continue;
     const RigidMotion now = motion_as_one(domain, part.body);
@@ -22,7 +23,9 @@ void move_points_as_one(Domain<D>& domain) {
     }
     for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
       const Vector3 x = now.centre + turned * (in_space<D>(surfaces.places[c]) - before);
-      for (int a = 0; a < D; ++a) surfaces.places[c][a] = x[a];
+      Vec<double, D> place;
+      for (int a = 0; a < D; ++a) place[a] = x[a];
+      move_point(surfaces, part, c, place);
     }
   }
 }

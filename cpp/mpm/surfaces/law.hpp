@@ -10,7 +10,7 @@
 // A step passes the kink at which a spring begins somewhere within it, and a flat hit, of all
 // points of a face at once, would gain or lose a few per cent of its energy by where. So it begins
 // softly over w, what the two surfaces approach each other while the slower waves of the two bodies
-// pass a cell, as they begin to overlap there or have anywhere before, h / 20 at most:
+// pass a cell, as they begin to overlap there or have anywhere before, h / 5 at most:
 //   f = k (o + w / 2)^2 / (2 w) from o = -w / 2 to w / 2, then k o.                         (S4)
 //
 // Friction (Cundall & Strack 1979) is a spring too, with a memory s for each point and opposite: it
@@ -32,7 +32,7 @@
 namespace mpm {
 
 inline constexpr double layer = 0.25;       // H over the cells' size
-inline constexpr double most_onset = 0.05;  // w over the cells' size
+inline constexpr double most_onset = 0.2;   // w over the cells' size
 inline constexpr double tangential = 0.8;   // k_t / k
 inline constexpr double of_waves = 0.2;     // eta over A Z of both
 inline constexpr double least_push = 0.01;  // f over k o

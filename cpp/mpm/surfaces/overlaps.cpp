@@ -13,7 +13,7 @@ namespace {
 /// Springs may begin from this overlap on, (S4).
 template <int D>
 double least_overlap(const Domain<D>& domain) {
-  return -0.5 * most_onset * domain.grid.cell_size;
+  return -0.5 * std::min(domain.surfaces.longest_onset, most_onset * domain.grid.cell_size);
 }
 
 /// The faces of the box that a point overlaps, by o = e / 2 - z: f(opposite, o, normal).

@@ -211,8 +211,10 @@ template <int D>
 void place_points(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
   domain.threads.for_each(surfaces.parts.size(), [&](std::size_t k) {
-    const SurfacePart<D>& part = surfaces.parts[k];
-    if (part.as_one || part.foreign) return;
+    SurfacePart<D>& part = surfaces.parts[k];
+    if (part.as_one) return;
+    part.farthest_step = 0.0;
+    if (part.foreign) return;  // told by others
     const ParticlePool<D>& pool = domain.pool_of(domain.body_at(part.body));
     std::uint32_t host = part.first_host;
     Mat<double, D> F = deformation_of(pool, surfaces.hosts[host]);
@@ -225,9 +227,9 @@ void place_points(Domain<D>& domain) {
         second = second_derivatives_of(domain, surfaces.hosts[host]);
       }
       const Fibre<D> fibre(F, point.normal, 0.5 * surfaces.spacing);
-      surfaces.places[c] = pool.position_of(surfaces.hosts[host].row) +
-                           product(F, point.surface.away) + product(second, point.surface.second) -
-                           fibre.behind * fibre.direction;
+      move_point(surfaces, part, c,
+                 pool.position_of(surfaces.hosts[host].row) + product(F, point.surface.away) +
+                     product(second, point.surface.second) - fibre.behind * fibre.direction);
     }
   });
 }

@@ -56,23 +56,6 @@ Vec<double, D> slip_velocity(const Domain<D>& domain, const SurfacePart<D>& part
   return u;
 }
 
-/// How fast waves are in a body at the start [m/s]; without end in one that does not deform.
-template <int D>
-double waves_of(const Domain<D>& domain, int body) {
-  const Body<D>& of = domain.body_at(body);
-  return std::sqrt(of.stiffness / of.initial_density);
-}
-/// The way over which the spring of a touch begins at which the surfaces approach each other so
-/// fast, w of (S4).
-template <int D>
-double onset_of(const Domain<D>& domain, const SurfacePart<D>& part, Opposite opposite,
-                double approach) {
-  double waves = waves_of(domain, part.body);
-  if (!is_face(opposite)) waves = std::min(waves, waves_of(domain, opposite));
-  const double fastest = std::max(approach, fastest_approach(domain.surfaces, part.body, opposite));
-  return domain.grid.cell_size * std::min(fastest / waves, most_onset);
-}
-
 /// How fast the surfaces of a touch approach each other that slip with u on each other [m/s].
 template <int D>
 double approach_of(const SurfaceTouch<D>& touch, const Vec<double, D>& u) {

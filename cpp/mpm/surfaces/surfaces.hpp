@@ -172,6 +172,8 @@ struct SurfacePart {
   int rank = 0;             // whose it is
   std::uint32_t patch = 0;  // of that body and tile, as long as patches stay what they are
   std::uint32_t first_host = 0, hosts = 0, first_point = 0, points = 0;
+  // The square of the farthest way of its points in the last step, where it is known [m^2].
+  double farthest_step = std::numeric_limits<double>::infinity();
 
   std::vector<SurfaceTouch<D>> touches;                          // by point
   std::vector<KeptOfContact<MemoryOfTouch<D>>> kept, kept_next;  // by point and opposite
@@ -217,10 +219,12 @@ struct Surfaces {
   double moved = 0.0;                           // by the farthest of them since [m]
   double closing = 0.0;      // by how fast points near each other have moved since, at most [m/s]
   double awake_until = 0.0;  // by so much, SurfacePart::awake serves [m]
-  std::vector<HostInTouch<D>> in_touch;         // hosts
-  std::vector<std::uint32_t> moving;            // the numbers of these
-  std::vector<std::uint32_t> place_of_motion;   // of each host, 1 + where that is, or 0
-  std::vector<Approach> approaches;             // so far, by pair
+  std::vector<HostInTouch<D>> in_touch;        // hosts
+  std::vector<std::uint32_t> moving;           // the numbers of these
+  std::vector<std::uint32_t> place_of_motion;  // of each host, 1 + where that is, or 0
+  std::vector<Approach> approaches;            // so far, by pair
+  // Over which springs begin in this step, at most, (S4) [m].
+  double longest_onset = std::numeric_limits<double>::infinity();
   std::vector<ActingBetween<D>> between;        // bodies, by pair
   std::vector<BetweenByPart<D>> between_parts;  // scratch
   std::vector<OnBodyByPart> on_bodies_by_part;  // scratch
@@ -239,6 +243,15 @@ struct Surfaces {
 template <int D>
 const SurfacePart<D>& part_of_point(const Surfaces<D>& surfaces, std::uint32_t point) {
   return surfaces.parts[surfaces.hosts[surfaces.points[point].host].part];
+}
+
+/// A point of a part goes on to a place.
+template <int D>
+void move_point(Surfaces<D>& surfaces, SurfacePart<D>& part, std::uint32_t point,
+                const Vec<double, D>& to) {
+  const Vec<double, D> way = to - surfaces.places[point];
+  part.farthest_step = std::max(part.farthest_step, dot(way, way));
+  surfaces.places[point] = to;
 }
 
 /// By how much the surface of a point is set back towards an opposite [m].

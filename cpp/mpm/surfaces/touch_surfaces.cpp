@@ -206,6 +206,7 @@ void touch_surfaces(Domain<D>& domain) {
   move_points_as_one(domain);
   place_points(domain);
   if (surfaces.meet) find_near_points(domain);
+  bound_onsets(domain);
   for_each_own_part(domain, [&](SurfacePart<D>& part) { find_overlaps(domain, part); });
   pull_bonds(domain);
   find_motions(domain);
