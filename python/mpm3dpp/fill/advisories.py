@@ -205,9 +205,10 @@ def _locking(case: Case) -> list[str]:
         if "K" in given and "G" in given:
             nu = (3 * given["K"] - 2 * given["G"]) / (6 * given["K"] + 2 * given["G"])
         if nu > _INCOMPRESSIBLE and not material.volume_averaging:
+            instead = f" in place of material.{name}.damping.stiffness" if material.beta else ""
             found.append(
                 f"material.{name} has nu = {nu:.9g}, nearly incompressible, and is too stiff where "
-                f"it bends; give material.{name}.volume_averaging = true"
+                f"it bends; give material.{name}.volume_averaging = true{instead}"
             )
         if nu > _STIFFEST:
             found.append(
