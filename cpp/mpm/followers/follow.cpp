@@ -30,9 +30,9 @@ struct NumberAt {
   double turned(double x, unsigned, int) const { return x; }
 };
 
-/// f(place in Followers::patches, patch, its block) for the patches that have any.
+/// f(place in Followers::patches, patch, its block).
 template <int D, class F>
-void for_each_linked_patch(Domain<D>& domain, F&& f) {
+void for_each_kept_patch(Domain<D>& domain, F&& f) {
   const Followers<D>& followers = domain.followers;
   domain.threads.for_each(followers.patches.all.size(), [&](std::size_t k) {
     const std::size_t p = followers.patches.all[k].patch;
@@ -66,7 +66,7 @@ void give(Domain<D>& domain, const Of& of) {
   if (!followers.exist) return;
   constexpr int width = Of::template width<D>;
   sum_up(domain, followers.given, of);
-  for_each_linked_patch(domain, [&](std::size_t k, std::size_t, const NodeBlock<D>& block) {
+  for_each_kept_patch(domain, [&](std::size_t k, std::size_t, const NodeBlock<D>& block) {
     for (const SumAtNode& leading : followers.given.nodes[k]) {
       double* const to = of(block, leading.node);
       for (int a = 0; a < width; ++a) to[a] += followers.given.sums[leading.sum][a];
@@ -81,7 +81,7 @@ void take(Domain<D>& domain, const Of& of, Reflect&& reflect) {
   Followers<D>& followers = domain.followers;
   if (!followers.exist) return;
   sum_up(domain, followers.taken, of);
-  for_each_linked_patch(domain, [&](std::size_t k, std::size_t p, const NodeBlock<D>& block) {
+  for_each_kept_patch(domain, [&](std::size_t k, std::size_t p, const NodeBlock<D>& block) {
     if (followers.taken.nodes[k].empty()) return;
     for (const SumAtNode& following : followers.taken.nodes[k])
       std::copy_n(&followers.taken.sums[following.sum][0], Of::template width<D>,
@@ -113,7 +113,7 @@ void add_reaction(Domain<D>& domain, std::size_t p, const ForceBeyond<D>& one) {
 template <int D>
 void give_forces_to_leading(Domain<D>& domain) {
   give(domain, VectorAt{force_at});
-  for_each_linked_patch(domain, [&](std::size_t k, std::size_t p, const NodeBlock<D>&) {
+  for_each_kept_patch(domain, [&](std::size_t k, std::size_t p, const NodeBlock<D>&) {
     for (const ForceBeyond<D>& one : domain.followers.beyond[k]) add_reaction(domain, p, one);
   });
 }

@@ -3,7 +3,7 @@
 // B-splines). Beyond an edge of a body that lies askew to the cells there are nodes that one
 // particle alone reaches; their motions that do not strain it are held by nothing, and their masses
 // may be next to none. So a node of a body on nodes of its own leads if a cell among the 3^D that
-// its function reaches is filled to 1.5 / 2^D at least, by more than one of 2^D particles, and
+// its function reaches is filled to 1.499 / 2^D at least, by more than one of 2^D particles, and
 // others follow: with j such a node and i those that lead near it,
 //   u_j = sum_i e_ji u_i,   e_ji = w_ji (1, X_i - X_j) . c_j,   w = |X_i - X_j|^-4,
 //   sum_i w_ji (1, X_i - X_j) (1, X_i - X_j)^T c_j = (1, 0),                                 (E1)

@@ -27,7 +27,7 @@ struct BodyOfNodes {
   static bool mirrors(Wall wall) { return wall == Wall::slip || wall == Wall::fixed; }
 
   bool leads(const std::type_identity_t<Index<D>>& node) const {
-    constexpr double least = 1.5 / (1 << D);  // of 2^D particles a cell more than one
+    constexpr double least = 1.499 / (1 << D);  // of 2^D particles a cell more than one
     const auto image = walls.image(node);
     if (!(value_of(masses, image ? image->node : node) > 0.0)) return false;
     if (filled(node) >= least) return true;

@@ -30,7 +30,7 @@ struct Followers {
       bool full = false;
       around(i, 1, [&](const Index<D>& c) {
         const auto at = cells.find(c);
-        full = full || (at != cells.end() && at->second >= 1.5 * std::pow(0.5, D));
+        full = full || (at != cells.end() && at->second >= 1.499 * std::pow(0.5, D));
       });
       return full && exists(i);
     };

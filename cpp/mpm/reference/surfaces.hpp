@@ -59,8 +59,8 @@ struct Surfaces {
       const Vec<double, D> u = slip_velocity(t);
       const double speed = approach(t, u);
       SurfaceMemory<D> memory;
-      if (begins)
-        memory.w = onset(t, speed);
+      if (begins)  // no more than since the step before
+        memory.w = std::clamp(2.0 * (speed * step.dt - overlap(t)), 0.0, onset(t, speed));
       else
         memory = kept[of];
       if (!(overlap(t) > -0.5 * memory.w)) return;
@@ -89,7 +89,7 @@ struct Surfaces {
     if (!is_face(t.whom)) c = std::min(c, waves(other(t)));
     if (const auto before = approaches.find(pair_of(t)); before != approaches.end())
       approach = std::max(approach, before->second);
-    return step.h * std::min(approach / c, 0.2);
+    return std::min({step.h * approach / c, 0.2 * step.h, 0.8 * e});
   }
 
   double height_over(Whom face, double x) const {

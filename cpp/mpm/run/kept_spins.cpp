@@ -7,6 +7,7 @@
 #include "mpm/math/eigen.hpp"
 #include "mpm/run/gather.hpp"
 #include "mpm/run/part_sums.hpp"
+#include "mpm/step/node_loops.hpp"
 #include "mpm/step/sum_over_bodies.hpp"
 #include "mpm/surfaces/restitution.hpp"
 

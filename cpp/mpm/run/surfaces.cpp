@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "mpm/comm/letters.hpp"
+#include "mpm/surfaces/approaches.hpp"
 #include "mpm/surfaces/bonds.hpp"
 #include "mpm/surfaces/near_points.hpp"
 #include "mpm/surfaces/overlaps.hpp"
@@ -50,6 +51,7 @@ void start_surfaces(Domain<D>& domain) {
   if (domain.surfaces.meet && bonds(domain.contact_settings)) add_bonds(domain);
   if (domain.surfaces.meet) find_near_points(domain);
   set_back_overlaps(domain);
+  bound_onsets(domain);
   set_back_onsets(domain);
   domain.surfaces.given = {};
   domain.surfaces.given_of = {};

@@ -5,6 +5,7 @@
 #include <limits>
 #include <tuple>
 
+#include "mpm/comm/all_sums.hpp"
 #include "mpm/comm/letters.hpp"
 #include "mpm/surfaces/law.hpp"
 
@@ -15,6 +16,16 @@ namespace {
 Approach as_pair(int body, Opposite opposite, double speed) {
   if (is_face(opposite) || body <= opposite) return {body, opposite, speed};
   return {opposite, body, speed};
+}
+
+/// The fastest of each pair.
+void keep_fastest(std::vector<Approach>& all) {
+  std::ranges::sort(all, [](const Approach& x, const Approach& y) {
+    return std::tuple(x.a, x.b, -x.speed) < std::tuple(y.a, y.b, -y.speed);
+  });
+  const auto again = std::ranges::unique(
+      all, [](const Approach& x, const Approach& y) { return x.a == y.a && x.b == y.b; });
+  all.erase(again.begin(), again.end());
 }
 
 /// How fast waves are in a body at the start [m/s]; without end in one that does not deform.
@@ -40,7 +51,8 @@ double onset_of(const Domain<D>& domain, const SurfacePart<D>& part, Opposite op
   double waves = waves_of(domain, part.body);
   if (!is_face(opposite)) waves = std::min(waves, waves_of(domain, opposite));
   const double fastest = std::max(approach, fastest_approach(domain.surfaces, part.body, opposite));
-  return domain.grid.cell_size * std::min(fastest / waves, most_onset);
+  return std::min(domain.grid.cell_size * fastest / waves,
+                  most_onset(domain.grid.cell_size, domain.surfaces.spacing));
 }
 
 template <int D>
@@ -48,13 +60,17 @@ void bound_onsets(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
   double farthest = 0.0, waves = std::numeric_limits<double>::infinity(), fastest = 0.0;
   for (const SurfacePart<D>& part : surfaces.parts) {
-    farthest = std::max(farthest, part.farthest_step);
+    if (!part.foreign) farthest = std::max(farthest, part.square_of_step);
     waves = std::min(waves, waves_of(domain, part.body));
   }
   for (const Approach& one : surfaces.approaches) fastest = std::max(fastest, one.speed);
-  // Both surfaces may move, and the overlap may change by more than they do.
-  fastest = std::max(fastest, 3.0 * std::sqrt(farthest) / domain.time_step);
-  surfaces.longest_onset = domain.grid.cell_size * fastest / waves;
+  // Both surfaces may move, and overlaps change by up to 1.5 times of that where they begin.
+  constexpr double per_step = 3.0;
+  farthest = std::sqrt(all_max(*domain.grid.partition.comm, farthest));
+  fastest = std::max(fastest, per_step * farthest / domain.time_step);
+  // Rigid bodies alone have no waves: then the quotient may be no number.
+  surfaces.longest_onset = std::min(most_onset(domain.grid.cell_size, surfaces.spacing),
+                                    domain.grid.cell_size * fastest / waves);
 }
 
 template <int D>
@@ -65,17 +81,11 @@ void learn_approaches(Domain<D>& domain) {
     for (const auto& [opposite, speed] : part.begun)
       if (!part.foreign && speed > fastest_approach(surfaces, part.body, opposite))
         faster.push_back(as_pair(part.body, opposite, speed));
+  keep_fastest(faster);
   entries_of_all(*domain.grid.partition.comm, faster);
   if (faster.empty()) return;
-  // Of each pair the fastest is first.
-  std::vector<Approach>& all = surfaces.approaches;
-  all.insert(all.end(), faster.begin(), faster.end());
-  std::ranges::sort(all, [](const Approach& x, const Approach& y) {
-    return std::tuple(x.a, x.b, -x.speed) < std::tuple(y.a, y.b, -y.speed);
-  });
-  const auto again = std::ranges::unique(
-      all, [](const Approach& x, const Approach& y) { return x.a == y.a && x.b == y.b; });
-  all.erase(again.begin(), again.end());
+  surfaces.approaches.insert(surfaces.approaches.end(), faster.begin(), faster.end());
+  keep_fastest(surfaces.approaches);
 }
 
 template double onset_of<2>(const Domain<2>&, const SurfacePart<2>&, Opposite, double);

@@ -6,12 +6,12 @@
 namespace mpm {
 
 /// The way over which the spring of a touch begins at which the surfaces approach each other so
-/// fast, w of (S4) [m].
+/// fast, w of (S4), if they have not met before [m].
 template <int D>
 double onset_of(const Domain<D>& domain, const SurfacePart<D>& part, Opposite opposite,
                 double approach);
 
-/// Surfaces::longest_onset, by how far points have moved in the step.
+/// Surfaces::longest_onset, by how far points have moved in the step. All ranks together.
 template <int D>
 void bound_onsets(Domain<D>& domain);
 

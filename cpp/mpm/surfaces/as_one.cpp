@@ -9,7 +9,7 @@ void move_points_as_one(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
   for (SurfacePart<D>& part : surfaces.parts) {
     if (!part.as_one) continue;
-    part.farthest_step = 0.0;
+    part.square_of_step = 0.0;
     const Body<D>& body = domain.body_at(part.body);
     if (body.is_prescribed() ? !body.motion->moves : body.active() == 0) continue;
     const RigidMotion now = motion_as_one(domain, part.body);

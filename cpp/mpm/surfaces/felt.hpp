@@ -27,9 +27,9 @@ class SurfacePoint {
   static constexpr int n = D == 2 ? 6 : 5;
   static constexpr double reach = D == 2 ? 2.4725 : 2.3829;  // not less than R
 
-  /// No surface is felt whose nearest point is farther off [spacings]: all around at that height
-  /// the sum is a sixth of S_1.
-  static constexpr double farthest = 1.5;
+  /// No surface is felt whose nearest point is farther off [spacings]: springs begin up to 1.4
+  /// above the points, and in 3D these may lie 2^-1/2 aside.
+  static constexpr double farthest = 1.6;
 
   explicit SurfacePoint(double sum) {
     const double share = a2 * std::pow(sum / at_edge(), 1.0 / m);
@@ -52,7 +52,7 @@ class SurfacePoint {
   }
   /// The sum at a height of so many spacings.
   static double sum_at(double height) {
-    return at_edge() * std::pow((reach_squared - height * height) / a2, m);
+    return at_edge() * std::pow(std::max(reach_squared - height * height, 0.0) / a2, m);
   }
 
  private:

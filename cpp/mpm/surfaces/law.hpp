@@ -10,7 +10,8 @@
 // A step passes the kink at which a spring begins somewhere within it, and a flat hit, of all
 // points of a face at once, would gain or lose a few per cent of its energy by where. So it begins
 // softly over w, what the two surfaces approach each other while the slower waves of the two bodies
-// pass a cell, as they begin to overlap there or have anywhere before, h / 5 at most:
+// pass a cell, as they begin to overlap there or have anywhere before, h / 5 and 4 e / 5 at most
+// with e the spacing of points, and no more than has begun since the step before:
 //   f = k (o + w / 2)^2 / (2 w) from o = -w / 2 to w / 2, then k o.                         (S4)
 //
 // Friction (Cundall & Strack 1979) is a spring too, with a memory s for each point and opposite: it
@@ -32,10 +33,14 @@
 namespace mpm {
 
 inline constexpr double layer = 0.25;       // H over the cells' size
-inline constexpr double most_onset = 0.2;   // w over the cells' size
 inline constexpr double tangential = 0.8;   // k_t / k
 inline constexpr double of_waves = 0.2;     // eta over A Z of both
 inline constexpr double least_push = 0.01;  // f over k o
+
+/// The longest w [m].
+inline double most_onset(double cell_size, double spacing) {
+  return std::min(0.2 * cell_size, 0.8 * spacing);
+}
 
 /// Of a point of that area against another body, (S1) [N/m]; 1 / M of a rigid body is 0.
 inline double stiffness_of_point(double area, double cell_size, double compliance,

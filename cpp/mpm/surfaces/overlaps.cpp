@@ -1,5 +1,6 @@
 #include "mpm/surfaces/overlaps.hpp"
 
+#include <algorithm>
 #include <span>
 
 #include "mpm/fields/lanes.hpp"
@@ -10,15 +11,10 @@
 namespace mpm {
 namespace {
 
-/// Springs may begin from this overlap on, (S4).
-template <int D>
-double least_overlap(const Domain<D>& domain) {
-  return -0.5 * std::min(domain.surfaces.longest_onset, most_onset * domain.grid.cell_size);
-}
-
-/// The faces of the box that a point overlaps, by o = e / 2 - z: f(opposite, o, normal).
+/// The faces of the box that a point overlaps by more than that, o = e / 2 - z:
+/// f(opposite, o, normal).
 template <int D, class F>
-void for_each_face(const Domain<D>& domain, const Vec<double, D>& place, F&& f) {
+void for_each_face(const Domain<D>& domain, const Vec<double, D>& place, double least, F&& f) {
   const TileGrid<D>& grid = domain.grid;
   if (!grid.walls.touch()) return;
   for (int axis = D - 1; axis >= 0; --axis)  // by the number of the opposite
@@ -28,7 +24,7 @@ void for_each_face(const Domain<D>& domain, const Vec<double, D>& place, F&& f) 
       const double length = grid.cell_size * grid.walls.cells[static_cast<std::size_t>(axis)];
       const double height = side == 0 ? x : length - x;
       const double overlap = 0.5 * domain.surfaces.spacing - height;
-      if (!(overlap > least_overlap(domain))) continue;
+      if (!(overlap > least)) continue;
       Vec<double, D> normal = Vec<double, D>::zero();
       normal[axis] = side == 0 ? 1.0 : -1.0;
       f(opposite_face(axis, side), overlap, normal);
@@ -107,7 +103,7 @@ double sum_of_weights(const Domain<D>& domain, const SurfacePart<D>& part, const
 /// A point that overlaps another body by e - e zeta - b, with the points of this that it feels.
 template <int D>
 void add_touch_of_body(const Domain<D>& domain, SurfacePart<D>& part, const NearPoints& near,
-                       double sum, double set_back) {
+                       double sum, double set_back, double least) {
   const Surfaces<D>& surfaces = domain.surfaces;
   const double e = surfaces.spacing, share = 1.0 / (sum * face_of_spacing(surfaces));
   const SurfacePoint<D> in(sum);
@@ -115,7 +111,7 @@ void add_touch_of_body(const Domain<D>& domain, SurfacePart<D>& part, const Near
   touch.point = near.point;
   touch.opposite = near.body;
   touch.overlap = e - e * in.zeta - set_back;
-  if (!(touch.overlap > least_overlap(domain))) return;
+  if (!(touch.overlap > least)) return;
   touch.stiffness = stiffness_of_point(surfaces.points[near.point].area, domain.grid.cell_size,
                                        1.0 / domain.body_at(part.body).stiffness,
                                        1.0 / domain.body_at(near.body).stiffness);
@@ -161,10 +157,10 @@ void for_each_body(const Domain<D>& domain, const SurfacePart<D>& part, std::uin
   }
 }
 
-/// The sum of weights at that.
+/// The sum of weights at an overlap.
 template <int D>
-double least_sum(const Domain<D>& domain) {
-  return SurfacePoint<D>::sum_at(1.0 - least_overlap(domain) / domain.surfaces.spacing);
+double sum_at_overlap(const Domain<D>& domain, double overlap) {
+  return SurfacePoint<D>::sum_at(1.0 - overlap / domain.surfaces.spacing);
 }
 
 }  // namespace
@@ -174,20 +170,21 @@ void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part) {
   const Surfaces<D>& surfaces = domain.surfaces;
   part.touches.clear();
   part.felt.clear();
-  const double least = least_sum(domain);
+  // Springs begin from there on, (S4).
+  const double least = -0.5 * surfaces.longest_onset, least_sum = sum_at_overlap(domain, least);
   std::size_t next = 0;
   for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
     // Bodies that do not deform are held by faces as a whole.
     if (!part.as_one && surfaces.points[c].area > 0.0)
-      for_each_face(domain, surfaces.places[c],
+      for_each_face(domain, surfaces.places[c], least,
                     [&](Opposite face, double overlap, const Vec<double, D>& normal) {
                       const double back = set_back_of(surfaces, c, face);
-                      if (overlap - back > least_overlap(domain))
+                      if (overlap - back > least)
                         part.touches.push_back(
                             touch_of_face(domain, part.body, c, face, overlap, back, normal));
                     });
-    for_each_body(domain, part, c, least, next, [&](const NearPoints& near, double sum) {
-      add_touch_of_body(domain, part, near, sum, set_back_of(surfaces, c, near.body));
+    for_each_body(domain, part, c, least_sum, next, [&](const NearPoints& near, double sum) {
+      add_touch_of_body(domain, part, near, sum, set_back_of(surfaces, c, near.body), least);
     });
   }
 }
@@ -205,22 +202,22 @@ template <int D>
 void set_back_overlaps(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
   SetBack& told = domain.contact.set_back;
-  const double least = least_sum(domain);
+  const double least_sum = sum_at_overlap(domain, 0.0);
   const double seen = 1e-6 * domain.grid.cell_size;  // of what is drawn into each other
   for (SurfacePart<D>& part : surfaces.parts) {
     if (part.foreign) continue;
     std::size_t next = 0;
     for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
       const auto set_back = [&](Opposite opposite, double overlap) {
-        if (!(overlap > 0.0)) return;
+        if (!(overlap > 0.0)) return;  // by rounding
         surfaces.set_back.push_back({c, opposite, overlap});
         told.most = std::max(told.most, overlap);
         if (overlap > seen) ++told.particles;
       };
       if (!part.as_one && surfaces.points[c].area > 0.0)
-        for_each_face(domain, surfaces.places[c],
+        for_each_face(domain, surfaces.places[c], 0.0,
                       [&](Opposite face, double overlap, const auto&) { set_back(face, overlap); });
-      for_each_body(domain, part, c, least, next, [&](const NearPoints& near, double sum) {
+      for_each_body(domain, part, c, least_sum, next, [&](const NearPoints& near, double sum) {
         set_back(near.body, surfaces.spacing * (1.0 - SurfacePoint<D>(sum).zeta));
       });
     }

@@ -5,8 +5,8 @@
 
 namespace mpm {
 
-/// The faces of the box and the bodies that the points of a part overlap, and what springs push
-/// these with. Needs find_near_points().
+/// The faces of the box and the bodies that the points of a part overlap or may begin to: how deep,
+/// how stiff, along what. Needs find_near_points() and bound_onsets().
 template <int D>
 void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part);
 

@@ -213,7 +213,7 @@ void place_points(Domain<D>& domain) {
   domain.threads.for_each(surfaces.parts.size(), [&](std::size_t k) {
     SurfacePart<D>& part = surfaces.parts[k];
     if (part.as_one) return;
-    part.farthest_step = 0.0;
+    part.square_of_step = 0.0;
     if (part.foreign) return;  // told by others
     const ParticlePool<D>& pool = domain.pool_of(domain.body_at(part.body));
     std::uint32_t host = part.first_host;

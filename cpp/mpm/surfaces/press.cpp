@@ -1,12 +1,25 @@
 #include "mpm/surfaces/press.hpp"
 
+#include <algorithm>
+
 #include "mpm/surfaces/approaches.hpp"
 #include "mpm/surfaces/as_one.hpp"
 #include "mpm/surfaces/law.hpp"
 #include "mpm/surfaces/mirrored.hpp"
+#include "mpm/surfaces/overlaps.hpp"
+#include "mpm/surfaces/parts.hpp"
 
 namespace mpm {
 namespace {
+
+/// w of a touch that begins: no more than it has begun since the step before. One that has just
+/// parted from a shorter spring would be pushed at once.
+template <int D>
+double onset_now(const Domain<D>& domain, const SurfacePart<D>& part, const SurfaceTouch<D>& touch,
+                 double approach) {
+  const double begun = 2.0 * (approach * domain.time_step - touch.overlap);
+  return std::clamp(begun, 0.0, onset_of(domain, part, touch.opposite, approach));
+}
 
 /// What a touch remembers; null if it begins.
 template <int D>
@@ -195,9 +208,11 @@ void press_part(Domain<D>& domain, SurfacePart<D>& part) {
     const Vec<double, D> u =
         known && mu == 0.0 ? Vec<double, D>::zero() : slip_velocity(domain, part, touch);
     const double approach = approach_of(touch, u);
-    MemoryOfTouch<D> memory{Vec<double, D>::zero(),
-                            known ? 0.0 : onset_of(domain, part, touch.opposite, approach)};
-    if (known) memory = *known;
+    MemoryOfTouch<D> memory;
+    if (known)
+      memory = *known;
+    else
+      memory.onset = onset_now(domain, part, touch, approach);
     if (!(touch.overlap > -0.5 * memory.onset)) continue;
     if (!known) part.begun.emplace_back(touch.opposite, approach);
     touch.pushed = pushed_by(touch.overlap, memory.onset);

@@ -33,8 +33,8 @@ void find_motions(Domain<D>& domain);
 template <int D>
 void set_back_onsets(Domain<D>& domain);
 
-/// Friction of the touches of a part, with its memory; what is stored in their springs, and what
-/// faces of the box give. Needs find_overlaps() and find_motions().
+/// Springs and friction of the touches of a part, with their memory; what is stored in their
+/// springs, and what faces of the box give. Needs find_overlaps() and find_motions().
 template <int D>
 void press_part(Domain<D>& domain, SurfacePart<D>& part);
 

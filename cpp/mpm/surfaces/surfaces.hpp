@@ -5,6 +5,7 @@
 // A step ends with
 //   parts.hpp           where they are, (S0)
 //   near_points.hpp     which may feel each other: lists
+//   approaches.hpp      how far off springs may begin
 //   overlaps.hpp        which overlap a face of the box or another body, and how deep (felt.hpp)
 //   bonds.hpp           what is bonded pulls
 //   press.hpp           springs of an energy, and Coulomb friction that remembers (law.hpp)
@@ -80,7 +81,7 @@ struct Approach {
   }
 };
 
-/// A point that overlaps an opposite.
+/// A point that overlaps or may begin to an opposite.
 template <int D>
 struct SurfaceTouch {
   std::uint32_t point = 0;
@@ -172,8 +173,8 @@ struct SurfacePart {
   int rank = 0;             // whose it is
   std::uint32_t patch = 0;  // of that body and tile, as long as patches stay what they are
   std::uint32_t first_host = 0, hosts = 0, first_point = 0, points = 0;
-  // The square of the farthest way of its points in the last step, where it is known [m^2].
-  double farthest_step = std::numeric_limits<double>::infinity();
+  // Of the farthest way of its points in the last step, of own ones, where it is known [m^2].
+  double square_of_step = std::numeric_limits<double>::infinity();
 
   std::vector<SurfaceTouch<D>> touches;                          // by point
   std::vector<KeptOfContact<MemoryOfTouch<D>>> kept, kept_next;  // by point and opposite
@@ -223,8 +224,7 @@ struct Surfaces {
   std::vector<std::uint32_t> moving;           // the numbers of these
   std::vector<std::uint32_t> place_of_motion;  // of each host, 1 + where that is, or 0
   std::vector<Approach> approaches;            // so far, by pair
-  // Over which springs begin in this step, at most, (S4) [m].
-  double longest_onset = std::numeric_limits<double>::infinity();
+  double longest_onset = 0.0;  // over which springs begin in this step, at most, (S4) [m]
   std::vector<ActingBetween<D>> between;        // bodies, by pair
   std::vector<BetweenByPart<D>> between_parts;  // scratch
   std::vector<OnBodyByPart> on_bodies_by_part;  // scratch
@@ -250,7 +250,7 @@ template <int D>
 void move_point(Surfaces<D>& surfaces, SurfacePart<D>& part, std::uint32_t point,
                 const Vec<double, D>& to) {
   const Vec<double, D> way = to - surfaces.places[point];
-  part.farthest_step = std::max(part.farthest_step, dot(way, way));
+  part.square_of_step = std::max(part.square_of_step, dot(way, way));
   surfaces.places[point] = to;
 }
 

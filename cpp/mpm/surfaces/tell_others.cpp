@@ -63,10 +63,10 @@ void tell_all_places(Domain<D>& domain) {
   comm.finish(mail);
   for (const Letter& letter : mail.in) {
     Reader reader(letter);
-    for (SurfacePart<D>& part : surfaces.parts)
+    for (const SurfacePart<D>& part : surfaces.parts)
       if (part.foreign && !part.as_one && part.rank == letter.rank)
-        for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c)
-          move_point(surfaces, part, c, reader.template read<Vec<double, D>>());
+        for (Vec<double, D>& place : places_of(part))
+          place = reader.template read<Vec<double, D>>();
   }
   comm.release(mail);
 }
@@ -134,8 +134,7 @@ void tell_awake(Domain<D>& domain) {
   for (std::size_t k = 0; k < others.partners.size(); ++k) {
     Reader reader(mail.in[k]);
     for (const std::uint32_t point : others.partners[k].take_points)
-      move_point(surfaces, surfaces.parts[surfaces.hosts[surfaces.points[point].host].part], point,
-                 reader.template read<Vec<double, D>>());
+      surfaces.places[point] = reader.template read<Vec<double, D>>();
     while (!reader.done()) others.hosts.push_back(reader.template read<HostElsewhere<D>>());
   }
   std::ranges::sort(others.hosts, {}, &HostElsewhere<D>::host);
