@@ -17,7 +17,7 @@ from mpm3dpp.case.grid import CONTACT, FACES
 
 from .parts import Filled
 
-_FASTEST = 0.25
+_FASTEST = 0.2
 """Speed of meeting over that of waves above which points lie as deep as springs reach."""
 
 
@@ -35,8 +35,8 @@ def surface_notes(case: Case, bodies: Filled) -> list[str]:
                 found.append(
                     f"{key_text(case.part_path(name))} and {other} approach at "
                     f"{speed / waves:.2g} of the speed of its waves, {waves:.3g} m/s: above "
-                    f"{_FASTEST:g} of it surfaces may go through each other where they are thin or "
-                    'fold; give frame = "updated" if a run warns of that'
+                    f"{_FASTEST:g} of it surfaces may go through each other where they are round, "
+                    'thin or fold; give frame = "updated" if a run warns of that'
                 )
                 break
     return found
