@@ -58,7 +58,7 @@ def shares(
 
 @pytest.mark.parametrize(("speed", "model"), [(0.1, "elastic"), (0.2, "neo_hookean")])
 def test_balls_that_hit_fast(speed: float, model: str) -> None:
-    """Balls of 4 cells a radius keep their energy to .3 %, squeezed by a quarter."""
+    """Balls of 4 cells a radius keep their energy to .3 %: none is made, .11 % taken at most."""
 
     def ball(side: int) -> dict[str, Any]:
         return {"sphere": {"centre": [4.01 * side, 0.013, 0.0], "radius": 4.0}}
@@ -72,7 +72,8 @@ def test_balls_that_hit_fast(speed: float, model: str) -> None:
 @pytest.mark.parametrize("cells", [40, 60, 80])
 def test_discs_that_hit_along_the_diagonal(cells: int, beside: float) -> None:
     """E5, discs of a radius of .2, cells of 1 / cells: with 60 they made 3 % of their energy where
-    the root of the overlap was steep."""
+    the root of the overlap was steep. None is made, .11 % taken at most; bounds leave twice that,
+    as points swing against each other and rounding decides how."""
 
     def disc(centre: float, speed: float) -> dict[str, Any]:
         shape = {"disc": {"centre": [centre + beside, centre], "radius": 0.2}}
@@ -93,7 +94,8 @@ def test_discs_that_hit_along_the_diagonal(cells: int, beside: float) -> None:
 
 @pytest.mark.parametrize("speed", [0.03, 0.1, 0.2])
 def test_blocks_that_hit_flat(speed: float) -> None:
-    """All points of a face begin at once: no energy is made, 1.5 % at most taken."""
+    """All points of a face begin at once: no energy is made (2 to 3 % were), .6 % taken at most;
+    how much depends on where a step meets the faces, so that 1.5 % is allowed."""
 
     def block(side: int) -> dict[str, Any]:
         x = sorted([0.01 * side, 12.01 * side])
@@ -106,7 +108,8 @@ def test_blocks_that_hit_flat(speed: float) -> None:
 
 @pytest.mark.parametrize("speed", [0.1, 0.2])
 def test_turned_blocks_that_hit_with_friction(speed: float) -> None:
-    """Edges and faces askew to the cells; the heat of friction is counted."""
+    """Edges and faces askew to the cells; the heat of friction is counted. .005 % is made
+    (1 % was), .4 % taken at most, by few points, each of which begins somewhere in a step."""
 
     def block(side: int) -> dict[str, Any]:
         box = {"lower": [6.5 * side - 6.0, -6.0], "upper": [6.5 * side + 6.0, 6.0]}

@@ -106,10 +106,10 @@ template <int D>
 std::vector<Part<D>> parts_of(const std::vector<Follower<D>>& all, bool given) {
   std::vector<Part<D>> parts;
   for (const Follower<D>& one : all)
-    for (const Led<D>& led : one.led) {
-      const NodeOfBody<D> leading{one.node.body, led.by};
-      parts.push_back({given ? leading : one.node, given ? one.node.node : led.by, led.beyond,
-                       led.share, led.turned});
+    for (const Leader<D>& leader : one.leaders) {
+      const NodeOfBody<D> leading{one.node.body, leader.node};
+      parts.push_back({given ? leading : one.node, given ? one.node.node : leader.node,
+                       leader.beyond, leader.share, leader.turned});
     }
   std::ranges::sort(parts, [](const Part<D>& x, const Part<D>& y) {
     return std::tie(x.of, x.from, x.beyond) < std::tie(y.of, y.from, y.beyond);
@@ -194,8 +194,8 @@ void give_masses(TileGrid<D>& grid, const std::vector<Follower<D>>& all) {
   std::vector<OfNode<D>> given;
   for (const Follower<D>& one : all) {
     given.push_back({one.node, -one.mass});
-    for (const Led<D>& led : one.led)
-      given.push_back({{one.node.body, led.by}, led.share * one.mass});
+    for (const Leader<D>& leader : one.leaders)
+      given.push_back({{one.node.body, leader.node}, leader.share * one.mass});
   }
   const auto node_of = [](const OfNode<D>& one) { return one.node; };
   std::ranges::stable_sort(given, {}, node_of);

@@ -75,8 +75,8 @@ bool solve(std::array<std::array<double, D + 1>, D + 1> moments, std::array<doub
 
 /// (E1), by those within the least of four distances that are enough; none if there are none.
 template <int D>
-std::vector<Led<D>> leaders_of(const BodyOfNodes<D>& body,
-                               const std::type_identity_t<Index<D>>& node) {
+std::vector<Leader<D>> leaders_of(const BodyOfNodes<D>& body,
+                                  const std::type_identity_t<Index<D>>& node) {
   using Numbers = std::array<double, D + 1>;
   const auto away = [&](const Index<D>& i) {
     Numbers x{1.0};
@@ -89,7 +89,7 @@ std::vector<Led<D>> leaders_of(const BodyOfNodes<D>& body,
     return square;
   };
   for (const int times : {1, 2, 4, 9}) {
-    std::vector<Led<D>> led;
+    std::vector<Leader<D>> leaders;
     std::array<Numbers, D + 1> moments{};
     const double farthest = times * D;
     body.for_each_around(node, static_cast<int>(std::sqrt(farthest)), [&](const Index<D>& i) {
@@ -97,18 +97,18 @@ std::vector<Led<D>> leaders_of(const BodyOfNodes<D>& body,
       const double square = squared(x);
       if (i == node || square > farthest || !body.leads(i)) return;
       const auto image = body.walls.image(i);
-      led.push_back({image ? image->node : i, i, 0.0, image ? image->turned : 0u});
+      leaders.push_back({image ? image->node : i, i, 0.0, image ? image->turned : 0u});
       for (std::size_t r = 0; r <= D; ++r)
         for (std::size_t s = 0; s <= D; ++s) moments[r][s] += x[r] * x[s] / (square * square);
     });
     Numbers c;
     if (!solve<D>(moments, c)) continue;
-    for (Led<D>& one : led) {
+    for (Leader<D>& one : leaders) {
       const Numbers x = away(one.beyond);
       const double square = squared(x);
       for (std::size_t r = 0; r <= D; ++r) one.share += x[r] * c[r] / (square * square);
     }
-    return led;
+    return leaders;
   }
   return {};
 }
@@ -126,13 +126,14 @@ void keep_masses(const BodyOfNodes<D>& body, std::vector<Follower<D>>& all) {
     std::vector<double> with(body.masses.size());
     for (std::size_t k = 0; k < with.size(); ++k) with[k] = body.masses[k].value;
     for (const Follower<D>& one : all)
-      for (const Led<D>& led : one.led) with[place_of_mass(led.by)] += led.share * one.mass;
-    const auto takes_too_much = [&](const Led<D>& led) {
-      const std::size_t k = place_of_mass(led.by);
-      return led.share < 0.0 && with[k] < 0.5 * body.masses[k].value;
+      for (const Leader<D>& leader : one.leaders)
+        with[place_of_mass(leader.node)] += leader.share * one.mass;
+    const auto takes_too_much = [&](const Leader<D>& leader) {
+      const std::size_t k = place_of_mass(leader.node);
+      return leader.share < 0.0 && with[k] < 0.5 * body.masses[k].value;
     };
     changed = std::erase_if(all, [&](const Follower<D>& one) {
-                return one.mass > 0.0 && std::ranges::any_of(one.led, takes_too_much);
+                return one.mass > 0.0 && std::ranges::any_of(one.leaders, takes_too_much);
               }) > 0;
   }
 }
@@ -148,8 +149,8 @@ void add_followers(const Walls<D>& walls, OnesOfBody<D> cells, OnesOfBody<D> mas
     const Index<D>& node = one.node.node;
     if ((!at_start && one.value > 0.0) || body.walls.image(node)) continue;
     if (body.leads(node) || !body.is_reached(node)) continue;
-    std::vector<Led<D>> led = leaders_of(body, node);
-    if (!led.empty()) own.push_back({one.node, one.value, std::move(led)});
+    std::vector<Leader<D>> leaders = leaders_of(body, node);
+    if (!leaders.empty()) own.push_back({one.node, one.value, std::move(leaders)});
   }
   keep_masses(body, own);
   std::ranges::move(own, std::back_inserter(all));

@@ -28,8 +28,8 @@ double value_of(OnesOfBody<D> all, const std::type_identity_t<Index<D>>& node) {
 
 /// Whom a node follows, and how: a node before the walls, maybe in the place of one beyond.
 template <int D>
-struct Led {
-  Index<D> by{}, beyond{};
+struct Leader {
+  Index<D> node{}, beyond{};
   double share = 0.0;
   unsigned turned = 0;
 };
@@ -37,7 +37,7 @@ template <int D>
 struct Follower {
   NodeOfBody<D> node;
   double mass = 0.0;
-  std::vector<Led<D>> led{};
+  std::vector<Leader<D>> leaders{};
 };
 
 /// Those of a body, `at_start` or later: who follows has no mass by then.

@@ -64,7 +64,7 @@ void bound_onsets(Domain<D>& domain) {
     waves = std::min(waves, waves_of(domain, part.body));
   }
   for (const Approach& one : surfaces.approaches) fastest = std::max(fastest, one.speed);
-  // Both surfaces may move, and overlaps change by up to 1.5 times of that where they begin.
+  // Both surfaces may move; the half more is for slopes above 1 of overlaps that begin.
   constexpr double per_step = 3.0;
   farthest = std::sqrt(all_max(*domain.grid.partition.comm, farthest));
   fastest = std::max(fastest, per_step * farthest / domain.time_step);
