@@ -98,11 +98,14 @@ void def_acting(SimulationClass& simulation) {
            nb::arg("particles"), nb::arg("areas"), nb::arg("sizes"), nb::arg("arms"))
       .def("add_surface",
            of_any([](auto& s, int body, const std::vector<std::uint32_t>& particles,
-                     const Input& away, const Input& normals, const Input& areas, double e) {
-             add_surface(s, body, {particles, span_of(away), span_of(normals), span_of(areas), e});
+                     const Input& away, const Input& normals, const Input& areas, const Input& felt,
+                     const std::vector<std::int32_t>& faces, double e) {
+             const auto of = [](const Input& x) { return span_of(x); };
+             add_surface(s, body,
+                         {particles, of(away), of(normals), of(areas), of(felt), faces, e});
            }),
            nb::arg("body"), nb::arg("particles"), nb::arg("offsets"), nb::arg("normals"),
-           nb::arg("areas"), nb::arg("spacing"))
+           nb::arg("areas"), nb::arg("felt_areas"), nb::arg("faces"), nb::arg("spacing"))
       .def("add_body_force",
            of_any([](auto& s, const std::vector<int>& bodies,
                      const std::vector<Expression::Program>& value) {

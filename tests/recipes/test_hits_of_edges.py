@@ -191,7 +191,8 @@ def test_a_block_hits_with_an_edge(against: str, dimension: int, along: float, m
 
     The force acts where a stiff edge were to .15 of a cell, by which the edge is pressed in (.003
     to .1 of one), friction is mu of the normal force to 2e-3 on a wall, where the normal is known,
-    but springs stick as they begin, and to 2 % on a face of points.
+    but springs stick as they begin, and to 2 % on a face of points, which without friction pushes
+    along itself by .8 % at most, by where among them the edge comes down.
     """
     case, edge = block_on_its_edge(against, dimension, along, mu)
     simulation = Simulation(case)
@@ -208,7 +209,7 @@ def test_a_block_hits_with_an_edge(against: str, dimension: int, along: float, m
         rubbed = -gained[0] / (mu * gained[1] * np.sign(along))
         assert rubbed == pytest.approx(1.0, abs=2e-3 if against == "wall" else 0.02)
     else:
-        assert abs(gained[0]) < 0.003 * gained[1]
+        assert abs(gained[0]) < (0.003 if against == "wall" else 0.01) * gained[1]
     if count == 2:
         momentum = [columns[f"momentum_{a}"][[0, -1]] for a in "xyz"]
         assert np.abs(np.diff(momentum, axis=1)).max() < 1e-12 * mass

@@ -74,10 +74,11 @@ def stresses(simulation: Simulation, body: str) -> np.ndarray:
 )
 def test_what_is_pressed_on_another(on: str, end: float, per_cell: int, basis: str) -> None:
     """Forces behind the surface, by linear functions: .45 to .79 and .9 to 1.34 of the pressure in
-    the first two rows. Beside an edge half of the points of each face stand for both, and there is
-    .86 of it at the least. To 1.7 % inside, with GIMP 1.9 %."""
+    the first two rows. On a wall to 1.7 % inside. Points of another body push those of a face
+    around them, at its edge those within it, so that the last column bears .88 of the pressure and
+    the third 1.04; had faces that are drawn touching not been levelled, .72 and 1.10."""
     stress = pressed(on, end, per_cell, basis=basis)
-    assert np.abs(stress[:, 2:-2] + 1.0).max() < 0.02
+    assert np.abs(stress[:, 2:-2] + 1.0).max() < (0.02 if on == "wall" else 0.05)
     assert np.abs(stress + 1.0).max() < 0.15
 
 

@@ -26,10 +26,11 @@ std::vector<Bond<D>> find_bonds(Surfaces<D>& surfaces) {
     const ContactPoint<D>& c = surfaces.point(t);
     const std::vector<ContactPoint<D>>& others = surfaces.bodies[b].points;
     double least = std::numeric_limits<double>::infinity();
-    for (const ContactPoint<D>& q : others) least = std::min(least, square(q.x, c.x));
+    for (const ContactPoint<D>& q : others)
+      if (q.A_felt > 0.0) least = std::min(least, square(q.x, c.x));
     std::vector<std::size_t> hosts;
     for (const ContactPoint<D>& q : others)
-      if (square(q.x, c.x) <= (1.0 + 1e-6) * least) hosts.push_back(q.host);
+      if (q.A_felt > 0.0 && square(q.x, c.x) <= (1.0 + 1e-6) * least) hosts.push_back(q.host);
     for (const std::size_t host : hosts)
       bonds.push_back({t.body, t.point, b,
                        surfaces.bodies[b].point_at(c.X, c.N, c.behind, 0.0, host),

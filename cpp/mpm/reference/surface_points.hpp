@@ -17,7 +17,9 @@ struct ContactPoint {
   Vec<double, D> d;      // from it to the surface, at the start [m]
   Vec<double, D> N;      // normal out of the body, at the start
   double behind = 0.0;   // how far the point lies behind the surface [m]
-  double A = 0.0;        // its share of the area [m^2; in 2D m times 1 m]
+  double A = 0.0;        // area that it pushes for [m^2; in 2D m times 1 m]
+  double A_felt = 0.0;   // of its face, by which others feel it [the same]
+  int face = 0;          // of its body
   Vec<double, D> X, x;   // its place at the start, and now [m]
 
   /// From the host out of the body.
@@ -46,7 +48,7 @@ struct SurfaceBody {
   /// One where X lies by now, which is at the start.
   ContactPoint<D> point_at(const Vec<double, D>& X, const Vec<double, D>& N, double behind,
                            double A, std::size_t nearest) {
-    ContactPoint<D> c{nearest, Vec<double, D>::zero(), N, behind, A, X, X};
+    ContactPoint<D> c{nearest, Vec<double, D>::zero(), N, behind, A, A, 0, X, X};
     if (deforms()) {
       c.d = X + behind * N - body().particles[nearest].X;
       return c;

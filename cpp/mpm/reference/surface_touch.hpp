@@ -2,6 +2,7 @@
 // What contact between surfaces is made of, in the reference step: the height of a point over the
 // points of a surface, planes of symmetry, and a touch.
 #include <complex>
+#include <map>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -70,6 +71,16 @@ struct Height {
     return low;
   }
 };
+
+/// (sum of S_f^4)^(1/4) of the faces of a body.
+template <class T>
+T of_all_faces(const std::map<int, T>& sums) {
+  const T one = sums.begin()->second;
+  if (sums.size() == 1) return one;
+  T powers(0.0);
+  for (const auto& [face, S] : sums) powers += std::pow(S / one, 4);
+  return one * std::pow(powers, 0.25);
+}
 
 /// Whom a point touches: a body by its number, or a face of the box as -1 - (2 axis + side).
 using Whom = int;

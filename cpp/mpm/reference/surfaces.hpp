@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "mpm/reference/levelled.hpp"
 #include "mpm/reference/surface_points.hpp"
 #include "mpm/reference/surface_touch.hpp"
 
@@ -20,6 +21,7 @@ struct Surfaces {
   std::vector<SurfaceTouch<D>> touches{};                            // of this step
   using Of = std::tuple<std::size_t, std::size_t, Whom>;             // body, point, whom it touches
   std::map<Of, double> set_back{};                                   // b [m]
+  std::map<Of, SurfaceLevelled<D>> levelled{};                       // b < 0, until they slide
   std::set<Of> bonded{};                                             // who does not push
   std::map<Of, SurfaceMemory<D>> kept{};                             // of who touches
   std::map<std::pair<Whom, Whom>, double> approaches{};              // so far, fastest [m/s]
@@ -32,11 +34,14 @@ struct Surfaces {
 
   /// Before the first step: what lies in others is set back, so that springs just begin.
   void start() {
-    for (SurfaceBody<D>& b : bodies) {
+    for (SurfaceBody<D>& b : bodies)
       for (ContactPoint<D>& c : b.points) b.place(c);
-    }
     for_each_touch([&](const SurfaceTouch<D>& t) {
       if (overlap(t) > 0.0) set_back[{t.body, t.point, t.whom}] = overlap(t);
+      if (sinks_where_drawn(*this, t)) {
+        const double sunk = -overlap(t) - 1e-9 * e;
+        levelled[{t.body, t.point, t.whom}] = {sunk, sunk};
+      }
     });
     for_each_near_touch([&](SurfaceTouch<D> t) {
       const double begun = overlap(t) + 0.5 * onset(t, approach(t, slip_velocity(t)));
@@ -53,6 +58,7 @@ struct Surfaces {
     touches.clear();
     std::map<Of, SurfaceMemory<D>> now;
     std::vector<std::pair<std::pair<Whom, Whom>, double>> begun;
+    keep_levelled(*this);
     for_each_near_touch([&](SurfaceTouch<D> t) {
       const Of of{t.body, t.point, t.whom};
       const bool begins = !kept.contains(of);
@@ -65,6 +71,8 @@ struct Surfaces {
         memory = kept[of];
       if (!(overlap(t) > -0.5 * memory.w)) return;
       if (begins) begun.emplace_back(pair_of(t), speed);
+      if (const auto level = levelled.find(of); level != levelled.end())
+        level->second.slide(step.dt * along(u, normalised(t.slope)));
       t.w = memory.w;
       bodies[t.body].stored_push += press(t);
       rub(t, u, memory.s);
@@ -113,8 +121,7 @@ struct Surfaces {
   template <class F>
   void for_each_near_touch(F&& f) {
     for_each_touch([&](SurfaceTouch<D> t) {
-      const auto b = set_back.find({t.body, t.point, t.whom});
-      if (b != set_back.end()) t.b = b->second;
+      t.b = set_back_of(*this, t);
       if (overlap(t) > -0.5 * 0.2 * step.h) f(t);
     });
   }
@@ -125,6 +132,7 @@ struct Surfaces {
     for (std::size_t a = 0; a < bodies.size(); ++a)
       for (std::size_t p = 0; p < bodies[a].points.size(); ++p) {
         const double A = bodies[a].points[p].A, of_a = bodies[a].compliance();
+        if (!(A > 0.0)) continue;
         const double H = 0.25 * step.h;
         for (Whom face = -1; face >= -2 * D && bodies[a].deforms(); --face) {
           const auto axis = static_cast<std::size_t>(axis_of(face));
@@ -149,22 +157,24 @@ struct Surfaces {
   bool feel(SurfaceTouch<D>& t) const {
     const ContactPoint<D>& p = bodies[t.body].points[t.point];
     const bool itself = t.whom == static_cast<Whom>(t.body);
-    double S = 0.0;
+    std::map<int, double> of_face;
     for_each_mirror(step, [&](const Mirror<D>& mirror) {
       for (std::size_t q = 0; q < other(t).points.size(); ++q) {
         const ContactPoint<D>& c = other(t).points[q];
-        if (itself && !(norm(c.X - p.X) > 4.0 * step.h)) continue;
+        if (!(c.A_felt > 0.0) || (itself && !(norm(c.X - p.X) > 4.0 * step.h))) continue;
         const double weight = height.weight(square(c.x, mirror.place(p.x)));
         if (!(weight > 0.0)) continue;
-        t.felt.push_back({q, mirror, c.A / std::pow(e, D - 1) * weight});
-        S += t.felt.back().share;
+        t.felt.push_back({q, mirror, c.A_felt / std::pow(e, D - 1) * weight});
+        of_face[c.face] += t.felt.back().share;
       }
     });
-    for (Felt<D>& felt : t.felt) felt.share /= S;
-    if (S > 0.0) t.z = e * height.zeta(S);
-    return S > 0.0;
+    if (of_face.empty()) return false;
+    const double S = of_all_faces(of_face);
+    for (Felt<D>& felt : t.felt)  // dS/dS_f over S
+      felt.share *= std::pow(of_face.at(other(t).points[felt.q].face) / S, 3) / S;
+    t.z = e * height.zeta(S);
+    return true;
   }
-
   /// The energy of the spring of a touch, of the places of p and of the points that it feels, (S3).
   template <class T>
   T energy(const SurfaceTouch<D>& t, const Vec<T, D>& p, const std::vector<Vec<T, D>>& q) const {
@@ -173,16 +183,17 @@ struct Surfaces {
       const T z = side_of(t.whom) == 0 ? x : height_over(t.whom, 0.0) - x;
       return t.k * stored<T>(0.5 * e - t.b - z, t.w);
     }
-    T S(0.0);
-    for (std::size_t j = 0; j < q.size(); ++j)
-      S += other(t).points[t.felt[j].q].A / std::pow(e, D - 1) *
-           height.weight(square(q[j], t.felt[j].mirror.place(p)));
-    return t.k * stored<T>(e - t.b - e * height.zeta(S), t.w);
+    std::map<int, T> sums;
+    for (std::size_t j = 0; j < q.size(); ++j) {
+      const ContactPoint<D>& c = other(t).points[t.felt[j].q];
+      sums[c.face] +=
+          c.A_felt / std::pow(e, D - 1) * height.weight(square(q[j], t.felt[j].mirror.place(p)));
+    }
+    return t.k * stored<T>(e - t.b - e * height.zeta(of_all_faces(sums)), t.w);
   }
 
   /// - dE/dx to p and to all that it feels. Of E(x + i d) the imaginary part is d dE/dx, exact with
-  /// a d of which the square is nothing (Squire & Trapp 1998).
-  /// Returns E.
+  /// a d of which the square is nothing (Squire & Trapp 1998). Returns E.
   double press(SurfaceTouch<D>& t) {
     using Complex = std::complex<double>;
     const auto complex = [](const Vec<double, D>& x) {
@@ -261,8 +272,7 @@ struct Surfaces {
     return u;
   }
 
-  /// (S2) at x_0: of the memory s what it has along the normal
-  /// by now is turned into the plane, so that it keeps its length.
+  /// (S2) at x_0: what s has along the normal by now is turned into the plane, to keep its length.
   void rub(SurfaceTouch<D>& t, const Vec<double, D>& u, Vec<double, D>& s) {
     const double f = norm(t.push), mu = friction_of(t), k_t = 0.8 * t.k;
     const Vec<double, D> n = normalised(t.push);

@@ -6,6 +6,7 @@
 #include "mpm/comm/letters.hpp"
 #include "mpm/surfaces/approaches.hpp"
 #include "mpm/surfaces/bonds.hpp"
+#include "mpm/surfaces/levelled.hpp"
 #include "mpm/surfaces/near_points.hpp"
 #include "mpm/surfaces/overlaps.hpp"
 #include "mpm/surfaces/parts.hpp"
@@ -22,17 +23,20 @@ void add_surface(Simulation<D>& simulation, int number, const ContactPointsGiven
     if (!holds) throw std::invalid_argument("surface of " + body.name + ": " + rule);
   };
   const std::size_t n = given.particles.size();
-  check(given.offsets.size() == n * D && given.normals.size() == n * D && given.areas.size() == n,
-        "offsets and normals must be (points, D), areas (points,)");
+  check(given.offsets.size() == n * D && given.normals.size() == n * D && given.areas.size() == n &&
+            given.felt_areas.size() == n && given.faces.size() == n,
+        "offsets and normals must be (points, D), areas, felt areas and faces (points,)");
   check(given.spacing > 0.0 && std::isfinite(given.spacing), "spacing must be a finite number > 0");
   Surfaces<D>& surfaces = domain.surfaces;
   check(surfaces.given.empty() || surfaces.spacing == given.spacing,
         "the spacing of points is one for all bodies");
   surfaces.spacing = given.spacing;
   for (std::size_t k = 0; k < n; ++k) {
-    GivenPoint<D> point{number, given.particles[k], {}, {}, given.areas[k]};
+    GivenPoint<D> point{
+        number, given.particles[k], {}, {}, given.areas[k], given.felt_areas[k], given.faces[k]};
     check(point.particle < body.count, "there is no such particle");
-    check(point.area > 0.0 && std::isfinite(point.area), "areas must be finite numbers > 0");
+    for (const double area : {point.area, point.felt_area})
+      check(area >= 0.0 && std::isfinite(area), "areas must be finite numbers >= 0");
     for (std::size_t a = 0; a < D; ++a) {
       const double offset = given.offsets[k * D + a];
       check(std::isfinite(offset), "offsets must be finite numbers");
@@ -51,6 +55,7 @@ void start_surfaces(Domain<D>& domain) {
   if (domain.surfaces.meet && bonds(domain.contact_settings)) add_bonds(domain);
   if (domain.surfaces.meet) find_near_points(domain);
   set_back_overlaps(domain);
+  level_faces(domain);
   bound_onsets(domain);
   set_back_onsets(domain);
   domain.surfaces.given = {};
@@ -85,6 +90,8 @@ void write_part(Letter& letter, std::size_t number, const SurfacePart<D>& part) 
   write(letter, part.at_faces);
   write(letter, part.kept.size());
   write_all<KeptOfContact<MemoryOfTouch<D>>>(letter, part.kept);
+  write(letter, part.levelled.size());
+  write_all<KeptOfContact<Levelled<D>>>(letter, part.levelled);
 }
 template <int D>
 void read_part(Reader& reader, Surfaces<D>& surfaces) {
@@ -94,6 +101,8 @@ void read_part(Reader& reader, Surfaces<D>& surfaces) {
   part.at_faces = reader.read<bool>();
   part.kept.resize(reader.read<std::size_t>());
   for (auto& one : part.kept) one = reader.read<KeptOfContact<MemoryOfTouch<D>>>();
+  part.levelled.resize(reader.read<std::size_t>());
+  for (auto& one : part.levelled) one = reader.read<KeptOfContact<Levelled<D>>>();
 }
 
 /// The state of the surfaces of all ranks, to the first.
@@ -192,6 +201,10 @@ void exchange_state(const Domain<D>& domain, Surfaces<D>& surfaces, StateStream&
   for (SurfacePart<D>& part : surfaces.parts) {
     exchange_kept(part.kept, stream, surfaces.points.size(), [](const MemoryOfTouch<D>& one) {
       return is_finite(one.slip) && one.onset >= 0.0 && std::isfinite(one.onset);
+    });
+    exchange_kept(part.levelled, stream, surfaces.points.size(), [](const Levelled<D>& one) {
+      return is_finite(one.slid) && one.by >= 0.0 && std::isfinite(one.by) &&
+             std::isfinite(one.first) && std::isfinite(one.gap);
     });
     stream(part.of_faces, part.moment_of_faces, part.at_faces);
   }

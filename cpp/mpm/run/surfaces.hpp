@@ -13,7 +13,9 @@ struct ContactPointsGiven {
   std::vector<std::uint32_t> particles;  // (n,) their numbers in the body
   std::span<const double> offsets;       // (n, D) from the particle to the surface [m]
   std::span<const double> normals;       // (n, D) out of the body, of unit length
-  std::span<const double> areas;         // (n,) [m^2; in 2D m times 1 m]
+  std::span<const double> areas;         // (n,) that they push for [m^2; in 2D m times 1 m]; or 0
+  std::span<const double> felt_areas;    // (n,) by which others feel them; or 0
+  std::vector<std::int32_t> faces;       // (n,) numbers of the faces of the body
   double spacing;                        // of the points of all bodies [m]
 };
 

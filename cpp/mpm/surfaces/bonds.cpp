@@ -82,7 +82,7 @@ void add_bonds(Domain<D>& domain) {
     place.offset += surfaces.places[bond.first] - surfaces.places[bond.nearest] +
                     (0.5 * surfaces.spacing) * (normal - place.normal);
     place.normal = normal;
-    place.area = 0.0;
+    place.area = place.felt_area = 0.0;
     place.number = static_cast<std::uint32_t>(count + first.size());
     first.push_back(surfaces.given_of[bond.first]);
     surfaces.given.push_back(place);

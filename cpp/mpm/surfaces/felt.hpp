@@ -15,11 +15,39 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "mpm/math/double_math.hpp"
 #include "mpm/surfaces/surfaces.hpp"
 
 namespace mpm {
+
+/// Rounds to multiples of 2^-44, of which sums below 2^8 are exact: their order does not matter,
+/// nor how many lists hold that are not felt.
+template <class T>
+T in_steps(T share) {
+  const T far(1.5 * 256.0);  // 2^52 steps are 2^8
+  return (share + far) - far;
+}
+
+/// The sum S of the faces of a body, each by itself: the largest, but smooth where two are as
+/// large.
+///   S = (sum_f S_f^4)^(1/4),   dS/dS_f = (S_f / S)^3
+inline double sum_of_faces(std::span<const double> sums) {
+  if (sums.size() == 1) return sums.front();
+  double most = 0.0, powers = 0.0;
+  for (const double sum : sums) most = std::max(most, sum);
+  if (!(most > 0.0)) return 0.0;
+  for (const double sum : sums) {
+    const double square = (sum / most) * (sum / most);
+    powers += in_steps(square * square);
+  }
+  return powers > 1.0 ? most * std::sqrt(std::sqrt(powers)) : most;
+}
+inline double share_of_face(double of_face, double sum) {
+  const double part = of_face / sum;
+  return part * part * part;
+}
 
 template <int D>
 class SurfacePoint {

@@ -16,7 +16,7 @@ namespace {
 constexpr double margin = 1.2, margin_of_awake = 0.3;  // spacings
 constexpr double pressed_from = 0.1;                   // spacings
 constexpr std::int64_t steps_between_speeds = 10;      // at most
-constexpr std::int32_t no_body = -1;  // of places that points are bonded to, which nothing touches
+constexpr std::int32_t unfelt = -1;  // the face of points that only push, and of bonds
 
 template <int D>
 double reach_of_lists(const Surfaces<D>& surfaces) {
@@ -86,12 +86,12 @@ class BoxesAround {
         for (int x = -1; x <= 1; ++x)
           boxes_.for_each_at({middle.index[0] + x, middle.index[1] + y, middle.index[2] + z},
                              [&](const PointBox<D>& box) {
-                               if (box.body >= 0 && (folds || box.body != middle.body) &&
+                               if (box.face != unfelt && (folds || box.body != middle.body) &&
                                    box.square_to(middle.low, middle.high) < square_)
                                  found.push_back(&box);
                              });
     std::ranges::sort(found, [](const PointBox<D>* p, const PointBox<D>* q) {
-      return p->body != q->body ? p->body < q->body : p->first < q->first;
+      return std::tie(p->body, p->face, p->first) < std::tie(q->body, q->face, q->first);
     });
     return found;
   }
@@ -107,7 +107,7 @@ class BoxesAround {
   std::array<Known, 32> known_;
 };
 
-/// The points that those of a part may feel, by body.
+/// The points that those of a part may feel, by body and face.
 template <int D>
 void find_near(const Domain<D>& domain, const PointBoxes<D>& boxes, const FoldedBodies<D>& folded,
                SurfacePart<D>& part) {
@@ -121,20 +121,30 @@ void find_near(const Domain<D>& domain, const PointBoxes<D>& boxes, const Folded
     if (!(surfaces.points[c].area > 0.0)) continue;
     const Vec<double, D> here = surfaces.places[c];
     NearPoints near{c, -1, 0, 0, 0.0};
+    std::int32_t face = 0;
     double nearest = 0.0;
+    std::size_t first_of_body = part.near_of.size();
     const auto close_list = [&] {
       near.count = static_cast<std::uint32_t>(part.near.size()) - near.first;
       // Until both have moved by half of what lies between.
       near.sleeps_until = 0.5 * (std::sqrt(nearest) - SurfacePoint<D>::farthest * surfaces.spacing);
-      if (near.count > 0) part.near_of.push_back(near);
+      if (near.count == 0) return;
+      // All faces of a body wake together.
+      if (first_of_body < part.near_of.size() && part.near_of[first_of_body].body != near.body)
+        first_of_body = part.near_of.size();
+      part.near_of.push_back(near);
+      const auto of_body = std::span(part.near_of).subspan(first_of_body);
+      const double wakes = std::ranges::min(of_body, {}, &NearPoints::sleeps_until).sleeps_until;
+      for (NearPoints& one : of_body) one.sleeps_until = wakes;
     };
     for (const PointBox<D>* const box : around.of(boxes.box_of(c), folds)) {
       if (part.as_one && folded.as_one(box->body)) continue;
       if (is_bonded(surfaces, c, box->body)) continue;
       if (!(box->square_to(here, here) < square)) continue;
-      if (box->body != near.body) {
+      if (box->body != near.body || box->face != face) {
         if (near.body >= 0) close_list();
         near.body = box->body;
+        face = box->face;
         near.first = static_cast<std::uint32_t>(part.near.size());
         nearest = std::numeric_limits<double>::infinity();
       }
@@ -176,12 +186,13 @@ void find_awake(const Surfaces<D>& surfaces, double until, SurfacePart<D>& part)
 template <int D>
 void make_near_lists(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
-  std::vector<std::int32_t> body_of(surfaces.points.size());
+  std::vector<FaceOfBody> face_of(surfaces.points.size());
   for (const SurfacePart<D>& part : surfaces.parts)
     for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c)
-      body_of[c] = surfaces.points[c].area > 0.0 ? part.body : no_body;
+      face_of[c] = {part.body,
+                    surfaces.points[c].felt_area > 0.0 ? surfaces.points[c].face : unfelt};
   const double reach = reach_of_lists(surfaces);
-  const PointBoxes<D> boxes(domain.grid.origin, reach, surfaces.places, body_of);
+  const PointBoxes<D> boxes(domain.grid.origin, reach, surfaces.places, face_of);
   const FoldedBodies<D> folded(domain, reach);
   for_each_own_part(domain, [&](SurfacePart<D>& part) { find_near(domain, boxes, folded, part); });
   surfaces.awake_until = 0.0;

@@ -6,6 +6,7 @@
 #include "mpm/fields/lanes.hpp"
 #include "mpm/surfaces/felt.hpp"
 #include "mpm/surfaces/law.hpp"
+#include "mpm/surfaces/levelled.hpp"
 #include "mpm/surfaces/mirrored.hpp"
 
 namespace mpm {
@@ -53,14 +54,6 @@ double face_of_spacing(const Surfaces<D>& surfaces) {
   return D == 2 ? surfaces.spacing : surfaces.spacing * surfaces.spacing;
 }
 
-/// Rounds to multiples of 2^-44, of which sums below 2^8 are exact: their order does not matter,
-/// nor how many lists hold that are not felt.
-template <class T>
-T in_steps(T share) {
-  const T far(1.5 * 256.0);  // 2^52 steps are 2^8
-  return (share + far) - far;
-}
-
 /// How far off a point may be felt [m].
 template <int D>
 double felt_within(const Surfaces<D>& surfaces) {
@@ -76,7 +69,7 @@ double sum_of_weights(const Surfaces<D>& surfaces, const SurfacePart<D>& part,
   Batch<W> sums(0.0);
   for_each_lanes<W>(part.awake.data() + near.first, near.count, [&](const auto& rows) {
     Batch<W> square(0.0), area(0.0);
-    for (int k = 0; k < W; ++k) area.v[k] = surfaces.points[rows[k]].area;
+    for (int k = 0; k < W; ++k) area.v[k] = surfaces.points[rows[k]].felt_area;
     for (int a = 0; a < D; ++a) {
       Batch<W> way(0.0);
       for (int k = 0; k < W; ++k) way.v[k] = surfaces.places[rows[k]][a];
@@ -100,12 +93,21 @@ double sum_of_weights(const Domain<D>& domain, const SurfacePart<D>& part, const
   return sum;
 }
 
+/// What a point feels of one body: lists of its faces, from SurfacePart::awake_of, with the sums of
+/// their weights, and both together.
+struct FacesNear {
+  std::span<const NearPoints> faces;
+  std::span<const double> sums;
+  double sum = 0.0;
+};
+
 /// A point that overlaps another body by e - e zeta - b, with the points of this that it feels.
 template <int D>
-void add_touch_of_body(const Domain<D>& domain, SurfacePart<D>& part, const NearPoints& near,
-                       double sum, double set_back, double least) {
+void add_touch_of_body(const Domain<D>& domain, SurfacePart<D>& part, const FacesNear& all,
+                       double set_back, double least) {
   const Surfaces<D>& surfaces = domain.surfaces;
-  const double e = surfaces.spacing, share = 1.0 / (sum * face_of_spacing(surfaces));
+  const NearPoints& near = all.faces.front();
+  const double e = surfaces.spacing, sum = all.sum, share = 1.0 / (sum * face_of_spacing(surfaces));
   const SurfacePoint<D> in(sum);
   SurfaceTouch<D> touch;
   touch.point = near.point;
@@ -119,17 +121,22 @@ void add_touch_of_body(const Domain<D>& domain, SurfacePart<D>& part, const Near
   Vec<double, D> slopes = Vec<double, D>::zero();
   for_each_image(domain.grid, surfaces.places[near.point], felt_within(surfaces),
                  [&](const PlaceOrImage<D>& here) {
-                   for (std::uint32_t k = near.first; k < near.first + near.count; ++k) {
-                     const std::uint32_t q = part.awake[k];
-                     const Vec<double, D> way = surfaces.places[q] - here.place;
-                     const double square = dot(way, way),
-                                  weight = SurfacePoint<D>::weight(square, e);
-                     if (!(weight > 0.0)) continue;
-                     const double area = surfaces.points[q].area;
-                     // do/dx_q = - e dzeta/dS a_q dw/dx_q
-                     const double slope =
-                         -e * in.by_sum * area * share * sum * SurfacePoint<D>::slope(square, e);
-                     part.felt.push_back({q, area * weight * share, slope * way, here.mirrors});
+                   for (std::size_t f = 0; f < all.faces.size(); ++f) {
+                     const double by_face = share_of_face(all.sums[f], sum);
+                     if (!(by_face > 0.0)) continue;
+                     const NearPoints& of = all.faces[f];
+                     for (std::uint32_t k = of.first; k < of.first + of.count; ++k) {
+                       const std::uint32_t q = part.awake[k];
+                       const Vec<double, D> way = surfaces.places[q] - here.place;
+                       const double square = dot(way, way),
+                                    weight = SurfacePoint<D>::weight(square, e);
+                       if (!(weight > 0.0)) continue;
+                       const double area = by_face * surfaces.points[q].felt_area;
+                       // do/dx_q = - e dzeta/dS dS/dS_f a_q dw/dx_q
+                       const double slope =
+                           -e * in.by_sum * area * share * sum * SurfacePoint<D>::slope(square, e);
+                       part.felt.push_back({q, area * weight * share, slope * way, here.mirrors});
+                     }
                    }
                  });
   // In an order that lists have not.
@@ -144,16 +151,22 @@ void add_touch_of_body(const Domain<D>& domain, SurfacePart<D>& part, const Near
   part.touches.push_back(touch);
 }
 
-/// f(near points, the sum of their weights) for the bodies that a point overlaps, from the first of
-/// SurfacePart::awake_of that are not before it on; `least`: of the sum.
+/// f(FacesNear) for the bodies that a point overlaps, from the first of SurfacePart::awake_of that
+/// are not before it on; `least`: of the sum.
 template <int D, class F>
 void for_each_body(const Domain<D>& domain, const SurfacePart<D>& part, std::uint32_t point,
-                   double least, std::size_t& next, F&& f) {
-  for (; next < part.awake_of.size() && part.awake_of[next].point == point; ++next) {
-    const NearPoints& near = part.awake_of[next];
-    if (domain.surfaces.moved < near.sleeps_until) continue;
-    const double sum = sum_of_weights(domain, part, near);
-    if (sum > least) f(near, sum);
+                   double least, std::size_t& next, std::vector<double>& sums, F&& f) {
+  const std::span<const NearPoints> all(part.awake_of);
+  while (next < all.size() && all[next].point == point) {
+    const std::size_t first = next;
+    sums.clear();
+    for (; next < all.size() && all[next].point == point && all[next].body == all[first].body;
+         ++next) {
+      const bool sleeps = domain.surfaces.moved < all[next].sleeps_until;
+      sums.push_back(sleeps ? 0.0 : sum_of_weights(domain, part, all[next]));
+    }
+    const double sum = sum_of_faces(sums);
+    if (sum > least) f(FacesNear{all.subspan(first, next - first), sums, sum});
   }
 }
 
@@ -170,8 +183,10 @@ void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part) {
   const Surfaces<D>& surfaces = domain.surfaces;
   part.touches.clear();
   part.felt.clear();
+  nothing_levelled_seen(part);
   // Springs begin from there on, (S4).
-  const double least = -0.5 * surfaces.longest_onset, least_sum = sum_at_overlap(domain, least);
+  const double e = surfaces.spacing, least = -0.5 * surfaces.longest_onset,
+               least_sum = sum_at_overlap(domain, least_overlap_seen(surfaces, part, least));
   std::size_t next = 0;
   for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
     // Bodies that do not deform are held by faces as a whole.
@@ -183,19 +198,28 @@ void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part) {
                         part.touches.push_back(
                             touch_of_face(domain, part.body, c, face, overlap, back, normal));
                     });
-    for_each_body(domain, part, c, least_sum, next, [&](const NearPoints& near, double sum) {
-      add_touch_of_body(domain, part, near, sum, set_back_of(surfaces, c, near.body), least);
+    for_each_body(domain, part, c, least_sum, next, part.face_sums, [&](const FacesNear& all) {
+      const Opposite body = all.faces.front().body;
+      double back = set_back_of(surfaces, c, body);
+      if (Levelled<D>* const levelled = find_kept(part.levelled, c, body))
+        back -= level(*levelled, e - e * SurfacePoint<D>(all.sum).zeta - back, e);
+      add_touch_of_body(domain, part, all, back, least);
     });
   }
+  keep_levelled(part, e);
 }
 
 template <int D>
 void for_each_near_surface(const Domain<D>& domain, const SurfacePart<D>& part,
                            const std::function<void(const NearPoints&, double)>& f) {
   std::size_t next = 0;
+  std::vector<double> sums;
   for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c)
-    for_each_body(domain, part, c, 0.0, next,
-                  [&](const NearPoints& near, double sum) { f(near, SurfacePoint<D>(sum).zeta); });
+    for_each_body(domain, part, c, 0.0, next, sums, [&](const FacesNear& all) {
+      NearPoints of_body = all.faces.front();  // one list follows the other
+      of_body.count = all.faces.back().first + all.faces.back().count - of_body.first;
+      f(of_body, SurfacePoint<D>(all.sum).zeta);
+    });
 }
 
 template <int D>
@@ -217,8 +241,8 @@ void set_back_overlaps(Domain<D>& domain) {
       if (!part.as_one && surfaces.points[c].area > 0.0)
         for_each_face(domain, surfaces.places[c], 0.0,
                       [&](Opposite face, double overlap, const auto&) { set_back(face, overlap); });
-      for_each_body(domain, part, c, least_sum, next, [&](const NearPoints& near, double sum) {
-        set_back(near.body, surfaces.spacing * (1.0 - SurfacePoint<D>(sum).zeta));
+      for_each_body(domain, part, c, least_sum, next, part.face_sums, [&](const FacesNear& all) {
+        set_back(all.faces.front().body, surfaces.spacing * (1.0 - SurfacePoint<D>(all.sum).zeta));
       });
     }
   }

@@ -146,8 +146,12 @@ void add_piece(Surfaces<D>& surfaces, int here, const PieceOfSurface<D>& piece) 
   SurfacePart<D>& part = surfaces.parts.back();
   for (const auto& point : piece.points) {
     const GivenPoint<D>& given = surfaces.given[point.given];
-    surfaces.points.push_back(
-        {part.first_host + point.host, {given.offset, point.second}, given.normal, given.area});
+    surfaces.points.push_back({part.first_host + point.host,
+                               given.face,
+                               {given.offset, point.second},
+                               given.normal,
+                               given.area,
+                               given.felt_area});
     surfaces.given_of.push_back(point.given);
     surfaces.places.push_back(point.place);
   }

@@ -15,13 +15,17 @@ namespace mpm {
 
 using BoxIndex = std::array<std::int32_t, 3>;
 
-/// The points of a body in a box: a range of those that are sorted so, and the least box that
-/// holds them.
+struct FaceOfBody {
+  std::int32_t body = 0, face = 0;
+};
+
+/// The points of a face of a body in a box: a range of those that are sorted so, and the least box
+/// that holds them.
 template <int D>
 struct PointBox {
   BoxIndex index{};
-  std::int32_t body = 0;
-  std::uint32_t first = 0, count = 0, next = 0;  // 1 + the number of another body's, or 0
+  std::int32_t body = 0, face = 0;
+  std::uint32_t first = 0, count = 0, next = 0;  // 1 + the number of another face's, or 0
   Vec<double, D> low, high;                      // [m]
 
   /// The square of how far it is from another.
@@ -39,16 +43,16 @@ struct PointBox {
 template <int D>
 class PointBoxes {
  public:
-  /// `edge` of a box [m]; `body_of` each point.
+  /// `edge` of a box [m]; body and face of each point.
   PointBoxes(const Vec<double, D>& origin, double edge, const std::vector<Vec<double, D>>& places,
-             const std::vector<std::int32_t>& body_of)
+             const std::vector<FaceOfBody>& face_of)
       : origin_(origin), edge_(edge), table_(64, 0), box_of_(places.size()) {
     std::uint32_t last = 0;
     for (std::size_t c = 0; c < places.size(); ++c) {
       const BoxIndex index = index_of(places[c]);
       // Points that follow one another are mostly in one box.
-      if (c == 0 || index != boxes_[last].index || body_of[c] != boxes_[last].body)
-        last = box_at(index, body_of[c]);
+      if (c == 0 || index != boxes_[last].index || !is_of(boxes_[last], face_of[c]))
+        last = box_at(index, face_of[c]);
       PointBox<D>& box = boxes_[last];
       for (int a = 0; a < D; ++a) {
         box.low[a] = std::min(box.low[a], places[c][a]);
@@ -75,7 +79,7 @@ class PointBoxes {
 
   std::uint32_t box_of(std::uint32_t point) const { return box_of_[point]; }
   const PointBox<D>& operator[](std::uint32_t box) const { return boxes_[box]; }
-  /// f(box) for those of all bodies at an index.
+  /// f(box) for those of all faces at an index.
   template <class F>
   void for_each_at(const BoxIndex& index, F&& f) const {
     for (std::uint32_t b = first_at(index); b != 0; b = boxes_[b - 1].next) f(boxes_[b - 1]);
@@ -120,14 +124,18 @@ class PointBoxes {
     return at;
   }
   std::uint32_t first_at(const BoxIndex& index) const { return table_[slot(index)]; }
-  /// The number of a body's box, which is made if there is none yet.
-  std::uint32_t box_at(const BoxIndex& index, std::int32_t body) {
+  static bool is_of(const PointBox<D>& box, const FaceOfBody& of) {
+    return box.body == of.body && box.face == of.face;
+  }
+  /// The number of a face's box, which is made if there is none yet.
+  std::uint32_t box_at(const BoxIndex& index, const FaceOfBody& of) {
     for (std::uint32_t b = first_at(index); b != 0; b = boxes_[b - 1].next)
-      if (boxes_[b - 1].body == body) return b - 1;
+      if (is_of(boxes_[b - 1], of)) return b - 1;
     constexpr double far = std::numeric_limits<double>::infinity();
     PointBox<D> box;
     box.index = index;
-    box.body = body;
+    box.body = of.body;
+    box.face = of.face;
     box.next = first_at(index);
     for (int a = 0; a < D; ++a) {
       box.low[a] = far;

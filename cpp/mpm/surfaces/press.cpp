@@ -5,6 +5,7 @@
 #include "mpm/surfaces/approaches.hpp"
 #include "mpm/surfaces/as_one.hpp"
 #include "mpm/surfaces/law.hpp"
+#include "mpm/surfaces/levelled.hpp"
 #include "mpm/surfaces/mirrored.hpp"
 #include "mpm/surfaces/overlaps.hpp"
 #include "mpm/surfaces/parts.hpp"
@@ -19,15 +20,6 @@ double onset_now(const Domain<D>& domain, const SurfacePart<D>& part, const Surf
                  double approach) {
   const double begun = 2.0 * (approach * domain.time_step - touch.overlap);
   return std::clamp(begun, 0.0, onset_of(domain, part, touch.opposite, approach));
-}
-
-/// What a touch remembers; null if it begins.
-template <int D>
-const MemoryOfTouch<D>* memory_of(const SurfacePart<D>& part, const SurfaceTouch<D>& touch) {
-  const KeptOfContact<MemoryOfTouch<D>> wanted{touch.point, touch.opposite, {}};
-  const auto at = std::ranges::lower_bound(part.kept, wanted, std::less<>{});
-  const bool found = at != part.kept.end() && !(wanted < *at);
-  return found ? &at->value : nullptr;
 }
 
 template <int D>
@@ -204,9 +196,11 @@ void press_part(Domain<D>& domain, SurfacePart<D>& part) {
     touch.rub = Vec<double, D>::zero();
     touch.pushed = 0.0;
     const double mu = friction_with(domain, part.body, touch.opposite);
-    const MemoryOfTouch<D>* const known = memory_of(part, touch);
+    const MemoryOfTouch<D>* const known = find_kept(part.kept, touch.point, touch.opposite);
+    Levelled<D>* const levelled = find_kept(part.levelled, touch.point, touch.opposite);
+    const bool must_know_slip = !known || mu > 0.0 || levelled;
     const Vec<double, D> u =
-        known && mu == 0.0 ? Vec<double, D>::zero() : slip_velocity(domain, part, touch);
+        must_know_slip ? slip_velocity(domain, part, touch) : Vec<double, D>::zero();
     const double approach = approach_of(touch, u);
     MemoryOfTouch<D> memory;
     if (known)
@@ -215,6 +209,7 @@ void press_part(Domain<D>& domain, SurfacePart<D>& part) {
       memory.onset = onset_now(domain, part, touch, approach);
     if (!(touch.overlap > -0.5 * memory.onset)) continue;
     if (!known) part.begun.emplace_back(touch.opposite, approach);
+    if (levelled) slide(*levelled, domain.time_step * u, normalised(touch.slope));
     touch.pushed = pushed_by(touch.overlap, memory.onset);
     touch.push = touch.stiffness * touch.pushed * touch.slope;
     part.stored_push += touch.stiffness * stored_by(touch.overlap, memory.onset);

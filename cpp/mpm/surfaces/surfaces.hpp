@@ -32,16 +32,20 @@ struct GivenPoint {
   std::uint32_t particle = 0;  // number of its host in the body
   Vec<double, D> offset;       // from the host to its place on the surface, at the start [m]
   Vec<double, D> normal;       // out of the body, of unit length
-  double area = 0.0;           // of its share of the surface [m^2; in 2D m times 1 m]
+  double area = 0.0;           // that it pushes for [m^2; in 2D m times 1 m]
+  double felt_area = 0.0;      // by which others feel it: of its share of its face [the same]
+  std::int32_t face = 0;       // of its body
   std::uint32_t number = 0;    // as it was given, while bonds are made
 };
 
 template <int D>
 struct ContactPoint {
   std::uint32_t host = 0;
+  std::int32_t face = 0;   // of its body
   PlaceAtHost<D> surface;  // its place on the surface
   Vec<double, D> normal;   // out of the body at the start
-  double area = 0.0;       // [m^2; in 2D m times 1 m]
+  double area = 0.0;       // that it pushes for [m^2; in 2D m times 1 m]
+  double felt_area = 0.0;  // by which others feel it [the same]
 };
 
 /// Whom a point touches: a body by its number, a face of the box by -1 - (2 axis + side).
@@ -63,11 +67,27 @@ struct KeptOfContact {
   }
 };
 
+/// What is kept of a point and an opposite; null if nothing is.
+template <class Kept>
+auto* find_kept(Kept& all, std::uint32_t point, Opposite opposite) {
+  const std::remove_const_t<typename Kept::value_type> wanted{point, opposite, {}};
+  const auto at = std::ranges::lower_bound(all, wanted, std::less<>{});
+  return at != all.end() && !(wanted < *at) ? &at->value : nullptr;
+}
+
 /// What a touch remembers of the steps before, until the point parts.
 template <int D>
 struct MemoryOfTouch {
   Vec<double, D> slip = Vec<double, D>::zero();  // of the spring of friction [m]
   double onset = 0.0;                            // way over which the other one begins [m]
+};
+
+/// Of a point that is drawn touching a face where that sinks beside an edge (levelled.hpp) [m].
+template <int D>
+struct Levelled {
+  double by = 0.0, first = 0.0;                  // how much deeper the point counts, now and first
+  double gap = 0.0;                              // what lies between now
+  Vec<double, D> slid = Vec<double, D>::zero();  // since the start
 };
 
 /// How fast two bodies, or one and a face, have approached each other at a touch, at most.
@@ -107,7 +127,7 @@ struct FeltPoint {
   Vec<double, D> slope;      // of the overlap with this point's place
   std::uint8_t mirrors = 0;  // its image is felt that these walls make (mirrored.hpp)
 };
-/// Points of another body that may be near to a point.
+/// Points of a face of another body that may be near to a point.
 struct NearPoints {
   std::uint32_t point = 0;
   std::int32_t body = 0;
@@ -178,13 +198,15 @@ struct SurfacePart {
 
   std::vector<SurfaceTouch<D>> touches;                          // by point
   std::vector<KeptOfContact<MemoryOfTouch<D>>> kept, kept_next;  // by point and opposite
+  std::vector<KeptOfContact<Levelled<D>>> levelled;              // by point and opposite
   std::vector<std::pair<Opposite, double>> begun;                // touches of the step, how fast
   double stored_push = 0.0, stored_rub = 0.0;                    // in the springs [J]
-  std::vector<NearPoints> near_of;                               // by point and body
+  std::vector<NearPoints> near_of;                               // by point, body and face
   std::vector<std::uint32_t> near;                               // points
   std::vector<NearPoints> awake_of;                              // of these what may be felt by now
   std::vector<std::uint32_t> awake;
   std::vector<FeltPoint<D>> felt;  // by touches
+  std::vector<double> face_sums;   // scratch: of the faces of a body that a point feels
   // By the faces of the box in the coming step, with the moment about the origin [N, N m].
   FaceImpulses<D> of_faces;
   Vector3 moment_of_faces = Vector3::zero();
@@ -257,11 +279,8 @@ void move_point(Surfaces<D>& surfaces, SurfacePart<D>& part, std::uint32_t point
 /// By how much the surface of a point is set back towards an opposite [m].
 template <int D>
 double set_back_of(const Surfaces<D>& surfaces, std::uint32_t point, Opposite opposite) {
-  if (surfaces.set_back.empty()) return 0.0;
-  const KeptOfContact<double> wanted{point, opposite, 0.0};
-  const auto at = std::ranges::lower_bound(surfaces.set_back, wanted, std::less<>{});
-  const bool found = at != surfaces.set_back.end() && !(wanted < *at);
-  return found ? at->value : 0.0;
+  const double* const found = find_kept(surfaces.set_back, point, opposite);
+  return found ? *found : 0.0;
 }
 
 }  // namespace mpm

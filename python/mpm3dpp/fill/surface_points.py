@@ -74,15 +74,15 @@ def add_surfaces(
     if not meets and case.parts()[part.name].frame != MATERIAL:
         return
     if part.balls is None:
-        found = [(number, *_of_body(case, part, particles.positions, spacing, sharing))]
+        found = [(number, _of_body(case, part, particles.positions, spacing, sharing))]
     else:
         number, world = number + sharing.first, sharing.world
         own = agreed(
             lambda: list(_of_balls(case, part, number, particles, spacing, sharing)), world
         )
         found = own if world is None else [x for told in world.comm.allgather(own) for x in told]
-    for of_body in found:
-        core.add_surface(*of_body, spacing)
+    for of_body, carried in found:
+        core.add_surface(of_body, *carried, spacing)
 
 
 @dataclass(frozen=True)
@@ -100,9 +100,9 @@ class Sharing:
     near: Near | None = None
 
 
-Carried = tuple[list[int], Array, Array, Array]
-"""Particles that carry points, the ways from them to the surface [m], its normals there, and the
-areas [m^2; in 2D m]."""
+Carried = tuple[list[int], Array, Array, Array, Array, list[int]]
+"""Particles that carry points, the ways from them to the surface [m], its normals there, the areas
+that they push for and by which they are felt [m^2; in 2D m], and the faces."""
 
 
 def _of_body(
@@ -129,7 +129,7 @@ def _of_balls(
     particles: Particles,
     spacing: float,
     sharing: Sharing,
-) -> Iterable[tuple[int, list[int], Array, Array, Array]]:
+) -> Iterable[tuple[int, Carried]]:
     """Yield the number of each ball here, and what carries its points."""
     assert part.balls is not None
     ends = np.cumsum(particles.counts)
@@ -139,14 +139,14 @@ def _of_balls(
         points = points_of_ball(centre, float(radius), along, 0.5 * spacing)
         yield (
             number + k,
-            *_carried(case, part, particles.positions[begin:end], points, 0.5 * spacing),
+            _carried(case, part, particles.positions[begin:end], points, 0.5 * spacing),
         )
 
 
 def _carried(
     case: Case, part: FilledPart, positions: Array, points: ContactPoints, depth: float
 ) -> Carried:
-    """Return the particles nearest to the points, the ways to the surface, normals and areas."""
+    """Return the particles nearest to the points, and what each has of them."""
     which, owner = nearest_particles(positions, points.places, part.spacing)
     shared = np.bincount(which, minlength=len(points.places))
     if not shared.all():
@@ -156,8 +156,14 @@ def _carried(
         raise case.error(case.part_path(part.name), rule, remedy)
     normals = np.ascontiguousarray(points.normals[which])
     offsets = points.places[which] + depth * normals - positions[owner]
-    areas = points.areas[which] / shared[which]
-    return owner.tolist(), np.ascontiguousarray(offsets), normals, areas
+    return (
+        owner.tolist(),
+        np.ascontiguousarray(offsets),
+        normals,
+        points.areas[which] / shared[which],
+        points.felt_areas[which] / shared[which],
+        points.faces[which].tolist(),
+    )
 
 
 def _held_planes(case: Case) -> list[tuple[int, float]]:

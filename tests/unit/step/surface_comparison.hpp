@@ -196,6 +196,22 @@ class SurfaceComparison {
     check(rubs, least_force());
     check(slips, 0.01 * fast.spacing);
     check(onsets, 0.01 * fast.spacing);
+    compare_levelled();
+  }
+  void compare_levelled() {
+    const Surfaces<D>& fast = twin_.simulation->domain.surfaces;
+    std::size_t count = 0;
+    for (const SurfacePart<D>& part : fast.parts) count += part.levelled.size();
+    std::size_t left = 0;
+    for (const auto& [of, expected] : twin_.surfaces.levelled) {
+      const auto& [body, point, whom] = of;
+      const std::uint32_t k = twin_.points[body][point];
+      const auto* found = find_kept(part_of_point(fast, k).levelled, k, whom);
+      CHECK(found != nullptr);
+      if (found) CHECK_CLOSE(found->by, expected.by, tolerance * fast.spacing);
+      ++left;
+    }
+    CHECK_EQUAL(count, left);
   }
   void compare_wholes() {
     const Surfaces<D>& fast = twin_.simulation->domain.surfaces;

@@ -202,34 +202,54 @@ class SurfaceTwin {
     });
   }
 
-  /// e / 2 under the faces of blocks, nearly evenly, each carried by the nearest particle.
+  /// What lies on the lower corner of the box is no surface: the body goes on behind.
+  static bool goes_on(const TurnedBlock<D>& block, int axis, double side) {
+    return side < 0.0 && std::abs(block.centre[axis] - 0.5 * block.size[axis]) < 1e-9;
+  }
+
+  /// e / 2 under the faces of blocks, nearly evenly, each carried by the nearest particle. At edges
+  /// some push and others are felt.
   void add_points(int number, const BlocksGiven<D>& given, reference::SurfaceBody<D>& surface) {
     constexpr double spacing = (D == 2 ? 0.5 : 1.0) * e / cell;
-    ContactPointsGiven told{{}, {}, {}, {}, e};
-    std::vector<double> offsets, normals, areas;
+    ContactPointsGiven told{{}, {}, {}, {}, {}, {}, e};
+    std::vector<double> offsets, normals, areas, felt_areas;
     for (const TurnedBlock<D>& block : given.blocks)
       for (int axis = 0; axis < D; ++axis)
         for (const double side : {-0.5, 0.5}) {
           Vec<double, D> low = Vec<double, D>::zero() - 0.5 * block.size;
           low[axis] = side * (block.size[axis] - e / cell);
-          // What lies on the lower corner of the box is no surface: the body goes on behind.
-          if (std::abs(block.centre[axis] + side * block.size[axis]) < 1e-9) continue;
+          if (goes_on(block, axis, side)) continue;
           for_each_in(low, block.size, spacing, axis, [&](Vec<double, D> at) {
-            for (int a = 0; a < D; ++a) at[a] += 0.03 * spacing * any();
-            const Vec<double, D> x = place_of(block, at), N = normal_of(block, axis, side);
+            bool at_edge = false;
+            for (int a = 0; a < D; ++a)
+              at_edge = at_edge || (a != axis && !goes_on(block, a, at[a]) &&
+                                    std::abs(at[a]) > 0.5 * block.size[a] - 0.75 * spacing);
             const double area = std::pow(spacing * cell, D - 1) * (1.0 + 0.05 * any());
-            const std::size_t host = nearest(surface.body(), x);
-            surface.points.push_back(surface.point_at(x, N, 0.5 * e, area, host));
-            const Vec<double, D> d = x + 0.5 * e * N - surface.body().particles[host].X;
-            told.particles.push_back(static_cast<std::uint32_t>(host));
-            offsets.insert(offsets.end(), d.c, d.c + D);
-            normals.insert(normals.end(), N.c, N.c + D);
-            areas.push_back(area);
+            const auto add = [&](double pushes, double felt) {
+              Vec<double, D> place = at;
+              for (int a = 0; a < D; ++a) place[a] += 0.03 * spacing * any();
+              const Vec<double, D> x = place_of(block, place), N = normal_of(block, axis, side);
+              const std::size_t host = nearest(surface.body(), x);
+              reference::ContactPoint<D> point = surface.point_at(x, N, 0.5 * e, pushes, host);
+              point.A_felt = felt;
+              point.face = 2 * axis + (side > 0.0 ? 1 : 0);
+              const Vec<double, D> d = x + 0.5 * e * N - surface.body().particles[host].X;
+              told.particles.push_back(static_cast<std::uint32_t>(host));
+              offsets.insert(offsets.end(), d.c, d.c + D);
+              normals.insert(normals.end(), N.c, N.c + D);
+              areas.push_back(pushes);
+              felt_areas.push_back(felt);
+              told.faces.push_back(point.face);
+              surface.points.push_back(point);
+            };
+            add(area, at_edge ? 0.0 : area);
+            if (at_edge) add(0.0, area);
           });
         }
     told.offsets = offsets;
     told.normals = normals;
     told.areas = areas;
+    told.felt_areas = felt_areas;
     add_surface(*simulation, number, told);
   }
   static std::size_t nearest(const reference::Body<D>& body, const Vec<double, D>& x) {
@@ -277,7 +297,8 @@ class SurfaceTwin {
     for (std::size_t b = 0; b < points.size(); ++b)
       for (const reference::ContactPoint<D>& c : surfaces.bodies[b].points)
         for (std::uint32_t k = 0; k < fast.points.size(); ++k)
-          if (std::cmp_equal(part_of_point(fast, k).body, b) && fast.points[k].area > 0.0 &&
+          if (std::cmp_equal(part_of_point(fast, k).body, b) &&
+              fast.points[k].area + fast.points[k].felt_area > 0.0 &&
               norm(fast.places[k] - c.x) < 1e-9 * cell)
             points[b].push_back(k);
   }

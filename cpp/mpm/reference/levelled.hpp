@@ -1,0 +1,59 @@
+#pragma once
+// Points that are drawn touching where a face sinks beside an edge, in the reference step.
+#include <set>
+
+#include "mpm/reference/surface_points.hpp"
+#include "mpm/reference/surface_touch.hpp"
+
+namespace mpm::reference {
+
+/// By how much deeper such a point counts, now and first, and how it has slid [m].
+template <int D>
+struct SurfaceLevelled {
+  double by = 0.0, first = 0.0;
+  Vec<double, D> slid = Vec<double, D>::zero();
+
+  void slide(const Vec<double, D>& way) {
+    slid += way;
+    by = std::min(by, std::max(first - 2.0 * norm(slid), 0.0));
+  }
+};
+
+/// b of (S3).
+template <class Surfaces, int D>
+double set_back_of(const Surfaces& surfaces, const SurfaceTouch<D>& t) {
+  const typename Surfaces::Of of{t.body, t.point, t.whom};
+  const auto b = surfaces.set_back.find(of);
+  const auto level = surfaces.levelled.find(of);
+  return (b != surfaces.set_back.end() ? b->second : 0.0) -
+         (level != surfaces.levelled.end() ? level->second.by : 0.0);
+}
+
+/// Does a point lie at the height of e over the plane of a point that it lies over, though the sum
+/// says that it is higher?
+template <class Surfaces, int D>
+bool sinks_where_drawn(const Surfaces& surfaces, const SurfaceTouch<D>& t) {
+  const double e = surfaces.e, o = surfaces.overlap(t);
+  if (is_face(t.whom) || t.whom == static_cast<Whom>(t.body)) return false;
+  if (!(o < -1e-9 * e && o > -0.3 * e)) return false;
+  const Vec<double, D>& x = surfaces.bodies[t.body].points[t.point].x;
+  return std::ranges::any_of(surfaces.other(t).points, [&](const ContactPoint<D>& q) {
+    return q.A_felt > 0.0 && std::abs(dot(x - q.x, q.N) - e) < 0.02 * e &&
+           norm(along(x - q.x, q.N)) < (D == 2 ? 0.3 : 0.75) * e;
+  });
+}
+
+/// Who is e / 20 away, or has slid too far, is so no more.
+template <class Surfaces>
+void keep_levelled(Surfaces& surfaces) {
+  std::set<typename Surfaces::Of> left;
+  surfaces.for_each_touch([&](const auto& t) {
+    const typename Surfaces::Of of{t.body, t.point, t.whom};
+    const auto level = surfaces.levelled.find(of);
+    if (level == surfaces.levelled.end() || !(level->second.by > 0.0)) return;
+    if (t.z - surfaces.e + set_back_of(surfaces, t) < 0.05 * surfaces.e) left.insert(of);
+  });
+  std::erase_if(surfaces.levelled, [&](const auto& one) { return !left.contains(one.first); });
+}
+
+}  // namespace mpm::reference
