@@ -12,6 +12,8 @@ import pytest
 from in_body import run_and_look
 from mpm3dpp import Case, Simulation
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.fill.advisories import refuse_time_step
+from mpm3dpp.fill.build import build
 
 CELL, E, PRESSURE = 1e-3, 1e7, 1e4
 WIDE = 6 * CELL
@@ -82,12 +84,12 @@ def test_what_is_pressed_on_another(on: str, end: float, per_cell: int, basis: s
     assert np.abs(stress + 1.0).max() < 0.15
 
 
-def hit(**run: Any) -> Simulation:
+def hit(**run: Any) -> Case:
     """Three times of a wave through a block of 6 cells that flies at a wall 1/2 cell before it."""
     box = {"lower": [-3 * CELL, 0.5 * CELL], "upper": [3 * CELL, 6.5 * CELL]}
     corners = {"lower": [-12 * CELL, 0.0], "upper": [12 * CELL, 24 * CELL]}
     body = {"material": "m", "frame": "material", "shape": {"box": box}, "velocity": [0.0, -1.0]}
-    case = Case.model_validate(
+    return Case.model_validate(
         {
             "grid": {
                 "dimension": 2,
@@ -99,14 +101,16 @@ def hit(**run: Any) -> Simulation:
             "body": {"b": body},
         }
     )
-    return Simulation(case)
 
 
 def test_steps_are_no_longer_than_springs_bear() -> None:
     """With 1 for cfl the hit made a third of the energy again, or ended the run."""
-    columns, _ = run_and_look(hit(cfl=1.0), 50)
+    columns, _ = run_and_look(Simulation(hit(cfl=1.0)), 50)
     energy = columns["kinetic"] + columns["internal"] + columns["springs"]
     assert energy.max() / energy[0] < 1.005
     assert energy[-1] / energy[0] > 0.98
+    case = hit(time_step=2.5e-5)
     with pytest.raises(CaseError, match=r"passes 0\.6 of a cell.*contact between surfaces"):
-        hit(time_step=2.5e-5)
+        Simulation(case)
+    with pytest.raises(CaseError, match=r"0\.6 of a cell: contact between surfaces"):  # As `check`.
+        refuse_time_step(case, build(case))

@@ -32,6 +32,7 @@ from .shape_notes import shape_notes
 from .size_notes import size_notes
 from .stretch_notes import stretch_notes
 from .surface_notes import surface_notes
+from .surface_points import MOST_CFL, surfaces_touch
 from .unit_notes import unit_notes
 from .wall_notes import off_walls, wall_notes
 
@@ -230,9 +231,13 @@ def refuse_time_step(case: Case, bodies: Filled) -> None:
     Raises:
         CaseError: it is larger than the largest stable step at the start.
     """
-    given, stable = case.run.time_step, case.grid.cell_size / fastest(case, bodies)
+    touch = surfaces_touch(case, bodies.parts.values())
+    most = MOST_CFL if touch else 1.0
+    given, stable = case.run.time_step, most * case.grid.cell_size / fastest(case, bodies)
     if given is not None and given > stable:
         rule = f"is larger than the largest stable step, about {stable:.3g} s at the start"
+        if touch:
+            rule += f", {most:g} of a cell: contact between surfaces bears no more"
         raise case.error(
             ("run", "time_step"), rule, "give a smaller one, or leave it out", value=given
         )

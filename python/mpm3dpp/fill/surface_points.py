@@ -31,6 +31,9 @@ Array = NDArray[np.float64]
 
 REACHES = 2.0
 """Reaches e of springs along the edge of a particle; contact points lie e / 2 behind surfaces."""
+MOST_CFL = 0.6
+"""Of the time in which a wave passes a cell, what springs between surfaces bear as a step; as
+cpp/mpm/run/time_step.cpp has it (decision 0071)."""
 ALONG = {2: 2.0, 3: 1.0}
 """Contact points along e, in 2D and 3D: rows have bumps that stop a roll."""
 
@@ -45,6 +48,11 @@ def point_spacing(case: Case, parts: Iterable[FilledPart]) -> float | None:
     if not own or not (touches or CONTACT in case.grid.walls):
         return None
     return min(own) / REACHES
+
+
+def surfaces_touch(case: Case, parts: Iterable[FilledPart]) -> bool:
+    """Return whether bodies on nodes of their own touch each other, themselves or walls."""
+    return point_spacing(case, parts) is not None
 
 
 def add_surfaces(

@@ -14,7 +14,7 @@ from mpm3dpp.fill.advisories import fastest, notes
 from mpm3dpp.fill.build import warnings
 from mpm3dpp.fill.parts import Filled, FilledPart
 from mpm3dpp.fill.point_warnings import point_warnings
-from mpm3dpp.fill.surface_points import point_spacing
+from mpm3dpp.fill.surface_points import MOST_CFL, surfaces_touch
 from mpm3dpp.materials import Failure, catalogue
 from mpm3dpp.plots.labels import scaled
 from mpm3dpp.shapes.faces import FACES
@@ -32,8 +32,6 @@ _FRAME_BYTES = (
     4 * 14
 )  # Of a particle, without further fields: position, velocity, stress, two more.
 
-_MOST_CFL_OF_SPRINGS = 0.6  # As cpp/mpm/run/time_step.cpp has it (decision 0071).
-
 
 def time_step(case: Case, bodies: Filled) -> float:
     """Return the expected first time step [s]: that given, or f h / max(c + |v|) as bounded."""
@@ -43,14 +41,9 @@ def time_step(case: Case, bodies: Filled) -> float:
     return min(_cfl(case, bodies) * case.grid.cell_size / fastest(case, bodies), bound)
 
 
-def _surfaces_touch(case: Case, bodies: Filled) -> bool:
-    """Return whether bodies on nodes of their own touch each other, themselves or walls."""
-    return point_spacing(case, bodies.parts.values()) is not None
-
-
 def _cfl(case: Case, bodies: Filled) -> float:
     """Return `run.cfl`, or what contact between surfaces bears of it."""
-    most = _MOST_CFL_OF_SPRINGS if _surfaces_touch(case, bodies) else math.inf
+    most = MOST_CFL if surfaces_touch(case, bodies.parts.values()) else math.inf
     return min(case.run.cfl, most)
 
 
@@ -63,7 +56,7 @@ def steps_in_words(case: Case, bodies: Filled) -> str:
     compressible = any(
         case.material[part.material].eos is not None for part in bodies.parts.values()
     )
-    meets = _surfaces_touch(case, bodies)
+    meets = surfaces_touch(case, bodies.parts.values())
     may_fall = case.run.time_step is None and (compressible or any(case.run.gravity) or meets)
     word, step = "at least" if may_fall else "about", time_step(case, bodies)
     steps = f"{word} {math.ceil(case.run.end_time / step):,} steps"
@@ -212,7 +205,7 @@ def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
         if in_body(case):
             contact = f"between surfaces, restitution {case.contact.restitution:g}"
         contact += f", friction {case.contact.friction:g}"
-    elif _surfaces_touch(case, bodies):
+    elif surfaces_touch(case, bodies.parts.values()):
         contact = f"of surfaces with walls, restitution {case.contact.restitution:g}"
     lines += [
         f"total: {particles:,} particles, mass {mass:.6g} kg{per_metre}, "
