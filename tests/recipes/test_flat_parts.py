@@ -118,3 +118,39 @@ def test_a_block_slides_down_with_friction(size):
     ways = [way(simulation, 20.0, end * (k + 1) / 3) for k in range(3)]
     expected = GRAVITY * (math.sin(math.radians(20)) - 0.3 * math.cos(math.radians(20)))
     assert (ways[2] - ways[1]) / (end / 3) ** 2 == pytest.approx(expected, rel=0.03)
+
+
+def test_a_disc_that_is_drawn_touching_rolls_at_once():
+    """Only what sinks beside edges is levelled: a disc of 6 cells has no flat to stand on."""
+    angle, radius, end = math.radians(1.0), 6 * CELL, 0.05
+    case = Case.model_validate(
+        {
+            "grid": {"dimension": 2, "cell_size": CELL},
+            "run": {
+                "end_time": end,
+                "gravity": [GRAVITY * math.sin(angle), -GRAVITY * math.cos(angle)],
+            },
+            "contact": {"friction": 0.5},
+            "material": {
+                "m": {
+                    "density": 1000.0,
+                    "damping": {"stiffness": "100 us"},
+                    "strength": {"elastic": {"E": 1e6, "nu": 0.3}},
+                }
+            },
+            "body": {
+                "slab": {
+                    "material": "m",
+                    "shape": {"box": {"lower": [-0.05, -0.02], "upper": [0.06, 0.0]}},
+                    "motion": "fixed",
+                },
+                "disc": {
+                    "material": "m",
+                    "frame": "material",
+                    "shape": {"disc": {"centre": [0.0, radius], "radius": radius}},
+                },
+            },
+        }
+    )
+    expected = GRAVITY * math.sin(angle) * end**2 / 3
+    assert way(Simulation(case), 0.0, end) == pytest.approx(expected, rel=4e-3)

@@ -1,5 +1,7 @@
 #pragma once
 // Points that are drawn touching where a face sinks beside an edge, in the reference step.
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "mpm/reference/surface_points.hpp"
@@ -29,18 +31,22 @@ double set_back_of(const Surfaces& surfaces, const SurfaceTouch<D>& t) {
          (level != surfaces.levelled.end() ? level->second.by : 0.0);
 }
 
-/// Does a point lie at the height of e over the plane of a point that it lies over, though the sum
-/// says that it is higher?
+/// By how much more the sum says that a point is high than it is over the plane of a point that it
+/// lies over, at the height of e or, nearly, above; or 0.
 template <class Surfaces, int D>
-bool sinks_where_drawn(const Surfaces& surfaces, const SurfaceTouch<D>& t) {
-  const double e = surfaces.e, o = surfaces.overlap(t);
-  if (is_face(t.whom) || t.whom == static_cast<Whom>(t.body)) return false;
-  if (!(o < -1e-9 * e && o > -0.3 * e)) return false;
+double sunk_where_drawn(const Surfaces& surfaces, const SurfaceTouch<D>& t) {
+  const double e = surfaces.e;
+  if (is_face(t.whom) || t.whom == static_cast<Whom>(t.body)) return 0.0;
+  if (!(t.z > e && t.z < 1.3 * e)) return 0.0;
   const Vec<double, D>& x = surfaces.bodies[t.body].points[t.point].x;
-  return std::ranges::any_of(surfaces.other(t).points, [&](const ContactPoint<D>& q) {
-    return q.A_felt > 0.0 && std::abs(dot(x - q.x, q.N) - e) < 0.02 * e &&
-           norm(along(x - q.x, q.N)) < (D == 2 ? 0.3 : 0.75) * e;
-  });
+  double most = 0.0;
+  for (const ContactPoint<D>& q : surfaces.other(t).points) {
+    const double height = dot(x - q.x, q.N);
+    if (q.A_felt > 0.0 && std::abs(height - e) < 0.02 * e &&
+        norm(along(x - q.x, q.N)) < (D == 2 ? 0.3 : 0.75) * e)
+      most = std::max(most, t.z - std::max(e, height) - 1e-9 * e);
+  }
+  return most;
 }
 
 /// Who is e / 20 away, or has slid too far, is so no more.
@@ -51,7 +57,7 @@ void keep_levelled(Surfaces& surfaces) {
     const typename Surfaces::Of of{t.body, t.point, t.whom};
     const auto level = surfaces.levelled.find(of);
     if (level == surfaces.levelled.end() || !(level->second.by > 0.0)) return;
-    if (t.z - surfaces.e + set_back_of(surfaces, t) < 0.05 * surfaces.e) left.insert(of);
+    if (t.z - surfaces.e - level->second.by < 0.05 * surfaces.e) left.insert(of);
   });
   std::erase_if(surfaces.levelled, [&](const auto& one) { return !left.contains(one.first); });
 }

@@ -75,11 +75,12 @@ struct Height {
 /// (sum of S_f^4)^(1/4) of the faces of a body.
 template <class T>
 T of_all_faces(const std::map<int, T>& sums) {
-  const T one = sums.begin()->second;
-  if (sums.size() == 1) return one;
-  T powers(0.0);
-  for (const auto& [face, S] : sums) powers += std::pow(S / one, 4);
-  return one * std::pow(powers, 0.25);
+  T most(0.0), powers(0.0);
+  for (const auto& [face, S] : sums)
+    if (std::real(S) > std::real(most)) most = S;
+  if (sums.size() == 1) return most;
+  for (const auto& [face, S] : sums) powers += std::pow(S / most, 4);
+  return most * std::pow(powers, 0.25);
 }
 
 /// Whom a point touches: a body by its number, or a face of the box as -1 - (2 axis + side).

@@ -38,10 +38,8 @@ struct Surfaces {
       for (ContactPoint<D>& c : b.points) b.place(c);
     for_each_touch([&](const SurfaceTouch<D>& t) {
       if (overlap(t) > 0.0) set_back[{t.body, t.point, t.whom}] = overlap(t);
-      if (sinks_where_drawn(*this, t)) {
-        const double sunk = -overlap(t) - 1e-9 * e;
+      if (const double sunk = sunk_where_drawn(*this, t); sunk > 0.0)
         levelled[{t.body, t.point, t.whom}] = {sunk, sunk};
-      }
     });
     for_each_near_touch([&](SurfaceTouch<D> t) {
       const double begun = overlap(t) + 0.5 * onset(t, approach(t, slip_velocity(t)));

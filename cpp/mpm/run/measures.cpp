@@ -96,7 +96,8 @@ std::size_t bytes_of_surfaces(const Surfaces<D>& surfaces) {
   for (const SurfacePart<D>& part : surfaces.parts)
     parts += bytes_of(part.touches) + bytes_of(part.kept) + bytes_of(part.kept_next) +
              bytes_of(part.near_of) + bytes_of(part.awake_of) + bytes_of(part.awake) +
-             bytes_of(part.near) + bytes_of(part.felt) + bytes_of(part.levelled);
+             bytes_of(part.near) + bytes_of(part.felt) + bytes_of(part.levelled) +
+             bytes_of(part.face_sums) + bytes_of(part.begun);
   return parts + bytes_of(surfaces.part_of) + bytes_of(surfaces.hosts) + bytes_of(surfaces.points) +
          bytes_of(surfaces.places) + bytes_of(surfaces.bonds) + bytes_of(surfaces.on_bodies) +
          bytes_of(surfaces.moving) + bytes_of(surfaces.between_parts) +

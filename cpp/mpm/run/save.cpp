@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* other_version = "it was made by another version of mpm3dpp";
 constexpr const char* other_case = "it was made from another case";
-constexpr std::int64_t format = 21;  // raised whenever exchange() or what a value means changes
+constexpr std::int64_t format = 22;  // raised whenever exchange() or what a value means changes
 
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {
@@ -79,7 +79,7 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
        {sizeof(Storage), sizeof(Ledger), sizeof(Removed), sizeof(RigidMotion),
         sizeof(SurfacePiece<D>), sizeof(StepWatch), sizeof(Note), sizeof(PairRecord),
         sizeof(CachedPair<D>), sizeof(KeptSpin), sizeof(ActingOnHost<D>), sizeof(ActingBetween<D>),
-        sizeof(ActingOnBody)})
+        sizeof(ActingOnBody), sizeof(Levelled<D>)})
     stream.same(size, other_version);
   stream.same(D, other_case);
   stream.same(domain.bodies.size(), other_case);

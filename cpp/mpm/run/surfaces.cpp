@@ -35,6 +35,7 @@ void add_surface(Simulation<D>& simulation, int number, const ContactPointsGiven
     GivenPoint<D> point{
         number, given.particles[k], {}, {}, given.areas[k], given.felt_areas[k], given.faces[k]};
     check(point.particle < body.count, "there is no such particle");
+    check(point.face >= 0, "faces must be numbers >= 0");
     for (const double area : {point.area, point.felt_area})
       check(area >= 0.0 && std::isfinite(area), "areas must be finite numbers >= 0");
     for (std::size_t a = 0; a < D; ++a) {

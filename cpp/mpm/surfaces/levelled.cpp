@@ -14,18 +14,21 @@ constexpr double above = 1e-9;           // spacings: rounding must not choose w
 template <int D>
 constexpr double beside = D == 2 ? 0.3 : 0.75;
 
-/// Does a point touch, as drawn, the plane of a point of another body that it lies over?
+/// By how much a surface sinks below the plane of one of its points, over which a point of another
+/// body lies that touches it as drawn; what lies between as drawn stays. 0 if there is none [m].
 template <int D>
-bool is_drawn_touching(const Surfaces<D>& surfaces, const SurfacePart<D>& part,
-                       const NearPoints& near) {
+double sunk_below_plane(const Surfaces<D>& surfaces, const SurfacePart<D>& part,
+                        const NearPoints& near, double zeta) {
   const double e = surfaces.spacing;
-  return std::ranges::any_of(
-      std::span(part.awake.data() + near.first, near.count), [&](std::uint32_t q) {
-        const Vec<double, D> way = surfaces.places[near.point] - surfaces.places[q];
-        const double height = dot(way, surfaces.points[q].normal);
-        return std::abs(height - e) < drawn_touching * e &&
-               dot(way, way) - height * height < beside<D> * e * beside<D> * e;
-      });
+  double most = 0.0;
+  for (const std::uint32_t q : std::span(part.awake.data() + near.first, near.count)) {
+    const Vec<double, D> way = surfaces.places[near.point] - surfaces.places[q];
+    const double height = dot(way, surfaces.points[q].normal);
+    if (std::abs(height - e) < drawn_touching * e &&
+        dot(way, way) - height * height < beside<D> * e * beside<D> * e)
+      most = std::max(most, e * zeta - std::max(e, height));
+  }
+  return most;
 }
 
 }  // namespace
@@ -37,10 +40,9 @@ void level_faces(Domain<D>& domain) {
   for (SurfacePart<D>& part : domain.surfaces.parts) {
     if (part.foreign) continue;
     for_each_near_surface(domain, part, [&](const NearPoints& near, double zeta) {
-      const double sunk = e * (zeta - 1.0) - above * e;
-      if (near.body == part.body || !(sunk > 0.0 && sunk < most_levelled * e)) return;
-      if (is_drawn_touching(surfaces, part, near))
-        part.levelled.push_back({near.point, near.body, {sunk, sunk}});
+      if (near.body == part.body || !(zeta > 1.0 && zeta < 1.0 + most_levelled)) return;
+      const double sunk = sunk_below_plane(surfaces, part, near, zeta) - above * e;
+      if (sunk > 0.0) part.levelled.push_back({near.point, near.body, {sunk, sunk}});
     });
   }
 }

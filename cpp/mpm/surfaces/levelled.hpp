@@ -11,7 +11,7 @@
 namespace mpm {
 
 inline constexpr double most_levelled = 0.3;      // spacings: a face sinks by less where it ends
-inline constexpr double levelled_parts = 0.05;    // spacings of a gap that ends it
+inline constexpr double levelled_gap = 0.05;      // spacings of a gap that ends it
 inline constexpr double levelled_per_slip = 2.0;  // faces sink by less than .3 of the way
 
 /// At the start, after what overlaps is set back.
@@ -22,20 +22,21 @@ void level_faces(Domain<D>& domain);
 template <int D>
 double least_overlap_seen(const Surfaces<D>& surfaces, const SurfacePart<D>& part, double least) {
   const double e = surfaces.spacing;
-  return part.levelled.empty() ? least : std::min(least, -levelled_parts * e) - most_levelled * e;
+  return part.levelled.empty() ? least : std::min(least, -levelled_gap * e) - most_levelled * e;
 }
 
-/// By how much deeper a point counts of which the surface lies at an overlap.
+/// By how much deeper a point counts of which the surface lies at an overlap, set back by nothing;
+/// none if a gap has opened.
 template <int D>
-double level(Levelled<D>& levelled, double overlap, double spacing) {
+double level_at(Levelled<D>& levelled, double overlap, double spacing) {
   levelled.gap = -(overlap + levelled.by);
-  if (!(levelled.gap < levelled_parts * spacing)) levelled.by = 0.0;
+  if (!(levelled.gap < levelled_gap * spacing)) levelled.by = 0.0;
   return levelled.by;
 }
 
 /// It has gone on by so much in a step, along the normal too.
 template <int D>
-void slide(Levelled<D>& levelled, const Vec<double, D>& way, const Vec<double, D>& normal) {
+void go_on(Levelled<D>& levelled, const Vec<double, D>& way, const Vec<double, D>& normal) {
   levelled.slid += way - dot(way, normal) * normal;
   const double left = levelled.first - levelled_per_slip * norm(levelled.slid);
   levelled.by = std::clamp(left, 0.0, levelled.by);
@@ -49,7 +50,7 @@ void nothing_levelled_seen(SurfacePart<D>& part) {
 template <int D>
 void keep_levelled(SurfacePart<D>& part, double spacing) {
   std::erase_if(part.levelled, [&](const KeptOfContact<Levelled<D>>& one) {
-    return !(one.value.by > 0.0 && one.value.gap < levelled_parts * spacing);
+    return !(one.value.by > 0.0 && one.value.gap < levelled_gap * spacing);
   });
 }
 

@@ -47,7 +47,7 @@ double moved_since(Domain<D>& domain) {
 }
 
 /// The fastest that points near each other have moved against each other since lists were made
-/// [m/s]. Of each point and body one stands for all.
+/// [m/s]. Of each point and face one stands for all.
 template <int D>
 double closing_speed(Domain<D>& domain) {
   const Surfaces<D>& surfaces = domain.surfaces;

@@ -202,7 +202,7 @@ void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part) {
       const Opposite body = all.faces.front().body;
       double back = set_back_of(surfaces, c, body);
       if (Levelled<D>* const levelled = find_kept(part.levelled, c, body))
-        back -= level(*levelled, e - e * SurfacePoint<D>(all.sum).zeta - back, e);
+        back -= level_at(*levelled, e - e * SurfacePoint<D>(all.sum).zeta, e);
       add_touch_of_body(domain, part, all, back, least);
     });
   }

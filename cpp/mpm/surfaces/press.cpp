@@ -209,7 +209,7 @@ void press_part(Domain<D>& domain, SurfacePart<D>& part) {
       memory.onset = onset_now(domain, part, touch, approach);
     if (!(touch.overlap > -0.5 * memory.onset)) continue;
     if (!known) part.begun.emplace_back(touch.opposite, approach);
-    if (levelled) slide(*levelled, domain.time_step * u, normalised(touch.slope));
+    if (levelled) go_on(*levelled, domain.time_step * u, normalised(touch.slope));
     touch.pushed = pushed_by(touch.overlap, memory.onset);
     touch.push = touch.stiffness * touch.pushed * touch.slope;
     part.stored_push += touch.stiffness * stored_by(touch.overlap, memory.onset);

@@ -158,7 +158,7 @@ def _carried(
     which, owner = nearest_particles(positions, points.places, part.spacing)
     shared = np.bincount(which, minlength=len(points.places))
     if not shared.all():
-        share = points.areas[shared == 0].sum() / points.areas.sum()
+        share = points.felt_areas[shared == 0].sum() / points.felt_areas.sum()
         rule = f"has no particles near {share:.0%} of its surface: it is too thin for its spacing"
         remedy = "give a smaller grid.cell_size or more particles_per_cell"
         raise case.error(case.part_path(part.name), rule, remedy)

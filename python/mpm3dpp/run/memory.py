@@ -18,7 +18,7 @@ from mpm3dpp.materials import state_columns
 # its material, and a node that it reaches, with those that lie beside it in blocks and in contact.
 # (Before particles are made, PARTICLE_BYTES_WITH_GRID of machine.py stands for both together.)
 _PARTICLE_BYTES, _NODE_BYTES = {2: 96, 3: 128}, {2: 150, 3: 200}
-_POINT_BYTES = {2: 190, 3: 230}  # Of a contact point of a surface, with those near to it.
+_POINT_BYTES = {2: 200, 3: 240}  # Of a contact point of a surface, with those near to it.
 _HISTORY_BYTES = 8 * (_core.Simulation.history_capacity + 1) * len(_core.history_terms)
 _BYTES_OF_FRAME = 18 << 10  # what is known of it, and the writing of results.vtkhdf: measured
 _WITH_EDGES = 1.15  # of a rank's part of the core's memory

@@ -8,7 +8,7 @@ meet each of them has a point at the edge, with half of its share.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -20,10 +20,11 @@ from .surface_parts import Surface, circle, sphere
 from .surfaces import surface
 
 Array = NDArray[np.float64]
+FacesOf = Callable[[Array, Array, float], NDArray[np.int64]]
+"""Of the places of points [m], their normals and their distance [m]."""
 
 _SAME_POINT = 0.4  # Spacings: two points of different faces that are nearer are one.
 _BESIDE = 1.6  # Spacings: points of one face that are nearer lie beside each other.
-_STILL_WITHIN = 0.25  # Depths: points of a face that lie so far behind others are felt.
 _ONE_FACE = 0.9  # Cosine of the angle up to which two normals are those of one face.
 
 
@@ -33,8 +34,8 @@ class ContactPoints(NamedTuple):
     Attributes:
         places: [m], shape (n, D).
         normals: unit vectors out of the body, shape (n, D).
-        areas: that they push for, shape (n,), which add up to the surface [m^2; in 2D m times 1 m];
-            0 of points that are only felt.
+        areas: that they push for, shape (n,) [m^2; in 2D m times 1 m]; where points of several
+            faces lie at one place each has its share, and 0 are those of points only felt.
         felt_areas: of their faces, by which others feel them, shape (n,); 0 of points that push
             only.
         faces: numbers of the faces of the body, shape (n,).
@@ -62,7 +63,7 @@ def points_of_shape(
     for axis, place in planes:
         own = abs(drawn.points[:, axis] - place) > 1e-3 * spacing
         drawn = Surface(drawn.points[own], drawn.areas[own])
-    return _by_faces(_inside(drawn, spacing, depth), spacing)
+    return _inside(drawn, spacing, depth, _beside_each_other)
 
 
 def points_of_ball(centre: Array, radius: float, spacing: float, depth: float) -> ContactPoints:
@@ -108,57 +109,70 @@ def points_of_particles(
                     moved[own, d] += by * edge
             points.append(moved)
             areas.append(drawn.areas / each ** (dimension - 1))
-    found = _inside(Surface(np.concatenate(points), np.concatenate(areas)), spacing, depth)
-    # Those that look one way are one face: where it has steps, their parts add up.
-    axes, ways = np.argmax(np.abs(found.normals), axis=1), found.normals.sum(axis=1) > 0.0
-    return found._replace(faces=2 * axes + ways)
+    drawn = Surface(np.concatenate(points), np.concatenate(areas))
+    return _inside(drawn, spacing, depth, _by_axes)
 
 
-def _inside(drawn: Surface, spacing: float, depth: float) -> ContactPoints:
+def _inside(
+    drawn: Surface, spacing: float, depth: float, faces_of: FacesOf | None = None
+) -> ContactPoints:
     """Return points behind a surface; faces that meet share what they push for at one place.
 
     Points push from where they lie as deep behind all faces; they are felt where they lie behind
     their own, as a face would bulge or sink beside its edges if its points were not where drawn.
+
+    Args:
+        drawn: the surface.
+        spacing: about the distance of the points [m].
+        depth: how far they lie behind the surface [m].
+        faces_of: gives the numbers of the faces of points; default one face for all.
     """
     from scipy.spatial import cKDTree
 
     areas = np.linalg.norm(drawn.areas, axis=1)
     normals = drawn.areas / areas[:, None]
     behind = drawn.points - depth * normals
-    places, lie = _behind_all_faces(behind, drawn.points, normals, depth)
-    pairs = cKDTree(places).query_pairs(_SAME_POINT * spacing, output_type="ndarray")
-    apart = np.einsum("ij,ij->i", normals[pairs[:, 0]], normals[pairs[:, 1]]) < _ONE_FACE
-    at_one_place = 1 + np.bincount(pairs[apart].ravel(), minlength=len(places))
+    faces = np.zeros(len(behind), dtype=np.int64)
+    if faces_of is not None:
+        faces = faces_of(behind, normals, spacing)
+    places = _behind_all_faces(behind, drawn.points, normals, depth)
+    own, others = cKDTree(places).query_pairs(_SAME_POINT * spacing, output_type="ndarray").T
+    own, others = np.concatenate([own, others]), np.concatenate([others, own])
+    apart = np.einsum("ij,ij->i", normals[own], normals[others]) < _ONE_FACE
+    # Of each point the other faces there, however many points they have.
+    met = np.unique(np.stack([own[apart], faces[others[apart]]], axis=1), axis=0)
+    at_one_place = 1 + np.bincount(met[:, 0], minlength=len(places))
     moved = (places != behind).any(axis=1)
-    left = moved & (lie > _STILL_WITHIN * depth)
     return ContactPoints(
-        np.concatenate([places, behind[left]]),
-        np.concatenate([normals, normals[left]]),
-        np.concatenate([areas / at_one_place, np.zeros(left.sum())]),
-        np.concatenate([np.where(moved, 0.0, areas), areas[left]]),
-        np.zeros(len(places) + left.sum(), dtype=np.int64),
+        np.concatenate([places, behind[moved]]),
+        np.concatenate([normals, normals[moved]]),
+        np.concatenate([areas / at_one_place, np.zeros(moved.sum())]),
+        np.concatenate([np.where(moved, 0.0, areas), areas[moved]]),
+        np.concatenate([faces, faces[moved]]),
     )
 
 
-def _by_faces(points: ContactPoints, spacing: float) -> ContactPoints:
-    """Return points with the numbers of their faces, which end where normals turn at once."""
+def _beside_each_other(places: Array, normals: Array, spacing: float) -> NDArray[np.int64]:
+    """Return the numbers of faces that end where normals turn at once."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree
 
-    count = len(points.places)
-    one, other = cKDTree(points.places).query_pairs(_BESIDE * spacing, output_type="ndarray").T
-    alike = np.einsum("ij,ij->i", points.normals[one], points.normals[other]) >= _ONE_FACE
-    graph = coo_array((np.ones(alike.sum()), (one[alike], other[alike])), shape=(count, count))
-    return points._replace(faces=connected_components(graph, directed=False)[1].astype(np.int64))
+    one, other = cKDTree(places).query_pairs(_BESIDE * spacing, output_type="ndarray").T
+    alike = np.einsum("ij,ij->i", normals[one], normals[other]) >= _ONE_FACE
+    beside = (np.ones(alike.sum()), (one[alike], other[alike]))
+    graph = coo_array(beside, shape=(len(places), len(places)))
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
 
 
-def _behind_all_faces(
-    places: Array, drawn: Array, normals: Array, depth: float
-) -> tuple[Array, Array]:
+def _by_axes(_places: Array, normals: Array, _spacing: float) -> NDArray[np.int64]:
+    """Return the numbers of faces of cubes: those that look one way are one, steps or not."""
+    axes, ways = np.argmax(np.abs(normals), axis=1), normals.sum(axis=1) > 0.0
+    return np.asarray(2 * axes + ways, dtype=np.int64)
+
+
+def _behind_all_faces(places: Array, drawn: Array, normals: Array, depth: float) -> Array:
     """Return points as deep behind the face beside an edge as behind their own.
-
-    With how far they lie behind the nearest other face as they are given [m], shape (n,).
 
     Args:
         places: behind their own faces [m], shape (n, D).
@@ -172,12 +186,11 @@ def _behind_all_faces(
     own, others = np.concatenate([own, others]), np.concatenate([others, own])
     aside = np.einsum("ij,ij->i", normals[own], normals[others]) < _ONE_FACE
     own, others = own[aside], others[aside]
-    moved, least = places.copy(), np.full(len(places), np.inf)
-    np.minimum.at(least, own, np.einsum("ij,ij->i", drawn[others] - places[own], normals[others]))
+    moved = places.copy()
     for _ in range(places.shape[1] - 1):  # Beside a corner there are two other faces.
         lie = np.einsum("ij,ij->i", drawn[others] - moved[own], normals[others])
-        shallow = np.flatnonzero((lie > 0.0) & (lie < (1.0 - 1e-9) * depth))
+        shallow = np.flatnonzero((lie > 1e-9 * depth) & (lie < (1.0 - 1e-9) * depth))
         # Of each point the last stands: the one that it lies least behind.
         shallow = shallow[np.argsort(-lie[shallow], kind="stable")]
         moved[own[shallow]] -= (depth - lie[shallow])[:, None] * normals[others[shallow]]
-    return moved, least
+    return moved
