@@ -1,8 +1,9 @@
 #pragma once
 // Faces that are drawn touching. Beside an edge the surface of a face sinks, as (S3) sums over what
 // is left of it there, and what is drawn touching would bear nothing on the last third of a cell.
-// Such points count deeper by what is missing, so that springs begin as far from there as
-// elsewhere, until they slide: by twice the slip less, as sunk places are no place of the point.
+// Such points count deeper by what the surface sinks below the plane of its points there, so that
+// springs begin as elsewhere, until they slide: by twice the slip less. What lies between as drawn,
+// as beside the place where a ball touches, stays.
 #include <algorithm>
 #include <limits>
 
