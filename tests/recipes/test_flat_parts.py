@@ -14,6 +14,11 @@ from mpm3dpp import Case, Simulation
 
 CELL = 5e-3
 GRAVITY = 9.81
+RUBBER = {
+    "density": 1000.0,
+    "damping": {"stiffness": "100 us"},
+    "strength": {"elastic": {"E": 1e6, "nu": 0.3}},
+}
 
 
 def sliding(
@@ -46,13 +51,7 @@ def sliding(
             "grid": {"dimension": dimension, "cell_size": CELL},
             "run": {"end_time": 0.15, "gravity": [0.0, -GRAVITY, 0.0][:dimension]},
             "contact": {"friction": friction},
-            "material": {
-                "m": {
-                    "density": 1000.0,
-                    "damping": {"stiffness": "100 us"},
-                    "strength": {"elastic": {"E": 1e6, "nu": 0.3}},
-                }
-            },
+            "material": {"m": RUBBER},
             "body": {
                 "slab": {"material": "m", "shape": turned(*slab), **plate},
                 "block": {
@@ -131,13 +130,7 @@ def test_a_disc_that_is_drawn_touching_rolls_at_once():
                 "gravity": [GRAVITY * math.sin(angle), -GRAVITY * math.cos(angle)],
             },
             "contact": {"friction": 0.5},
-            "material": {
-                "m": {
-                    "density": 1000.0,
-                    "damping": {"stiffness": "100 us"},
-                    "strength": {"elastic": {"E": 1e6, "nu": 0.3}},
-                }
-            },
+            "material": {"m": RUBBER},
             "body": {
                 "slab": {
                     "material": "m",

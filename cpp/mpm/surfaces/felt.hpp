@@ -1,7 +1,8 @@
 #pragma once
 // How deep a point p lies in the surface of another body, after the sum of decision 0054, by the
 // body's contact points q of areas A_q, e / 2 under the surface and e apart, e / 2 in 2D:
-//   S = sum_q a_q w_q,  w_q = (1 - |x_q - x_p|^2 / (R e)^2)^n,  a_q = A_q / e^(D - 1),
+//   S_f = sum_q a_q w_q of the points of a face, w_q = (1 - |x_q - x_p|^2 / (R e)^2)^n,
+//   S = (sum_f S_f^4)^(1/4),  a_q = A_q / e^(D - 1),
 //   zeta = z(R^2 - a^2 (S / S_1)^(1 / m)),  o = e - b - e zeta,                              (S3)
 //   z(s) = sqrt(s) from .3^2 on, and its tangent there below,
 // with a^2 = R^2 - 1, m = n + (D - 1) / 2, and S_1 the sum at the height of e over points all

@@ -70,7 +70,7 @@ struct KeptOfContact {
 /// What is kept of a point and an opposite; null if nothing is.
 template <class Kept>
 auto* find_kept(Kept& all, std::uint32_t point, Opposite opposite) {
-  const std::remove_const_t<typename Kept::value_type> wanted{point, opposite, {}};
+  const typename Kept::value_type wanted{point, opposite, {}};
   const auto at = std::ranges::lower_bound(all, wanted, std::less<>{});
   return at != all.end() && !(wanted < *at) ? &at->value : nullptr;
 }
@@ -86,7 +86,7 @@ struct MemoryOfTouch {
 template <int D>
 struct Levelled {
   double by = 0.0, first = 0.0;                  // how much deeper the point counts, now and first
-  double gap = 0.0;                              // what lies between now
+  double gap = 0.0;                              // scratch: what lies between now
   Vec<double, D> slid = Vec<double, D>::zero();  // since the start
 };
 

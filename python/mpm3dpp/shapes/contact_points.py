@@ -2,7 +2,7 @@
 """Contact points of a body: points of its drawn surface, evenly spread, a depth inside it.
 
 They lie on the shape and not on its filling: a ball filled by a lattice is round. Where two faces
-meet each of them has a point at the edge, with half of its share.
+meet each of them has a point at the edge, which pushes for half of its share.
 """
 
 from __future__ import annotations
