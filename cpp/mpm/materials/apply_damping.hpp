@@ -6,7 +6,8 @@
 namespace mpm {
 
 /// s = beta C : D, C : D = lambda tr(D) 1 + 2 G D, of the rate D that has strained the material in
-/// this step. The volumes are those of after the step.
+/// this step; 2 G (D - tr(D) / d 1) in d dimensions where the damping is of the shape alone. The
+/// volumes are those of after the step.
 template <class T, int D, int N>
 MPM_FLATTEN MPM_HD void apply_damping(const MaterialView& material, const BlockColumns<D>& columns,
                                       const StressSettings& settings,
@@ -14,7 +15,8 @@ MPM_FLATTEN MPM_HD void apply_damping(const MaterialView& material, const BlockC
   const StiffnessDamping& damping = material.damping;
   const double per_step = damping.beta / settings.time_step;
   const T two_G(2.0 * per_step * damping.shear),
-      lambda(per_step * (damping.pressure - 2.0 * damping.shear));
+      lambda(damping.of_shape ? -2.0 * per_step * damping.shear / D
+                              : per_step * (damping.pressure - 2.0 * damping.shear));
   T work(0.0), power(0.0);
   for_each_group<T>(block, [&](const Group<T, D>& group) {
     const Mat<T, D> gradient = gradient_of(group, block);

@@ -154,8 +154,13 @@ Material make_material(const MaterialChoice& choice) {
   if (choice.damping > 0.0) {
     if (material.moves_as_one())
       throw std::invalid_argument("a material without stress takes no damping.stiffness");
-    const double c = sound_speed_at_start(material);
-    material.damping = {choice.damping, material.density * c * c, shear_modulus(material)};
+    const double c = sound_speed_at_start(material), G = shear_modulus(material);
+    const bool of_shape = choice.volume_averaging;
+    if (of_shape && !(G > 0.0))
+      throw std::invalid_argument(
+          "a fluid with volume_averaging takes no damping.stiffness, which is of its shape then");
+    const double pressure = of_shape ? 4.0 / 3.0 * G : material.density * c * c;
+    material.damping = {choice.damping, pressure, G, of_shape};
   }
   return material;
 }

@@ -50,10 +50,12 @@ struct BulkViscosity {
 };
 
 /// Damping in proportion to the stiffness, Rayleigh's beta: beside the stress of the models, and no
-/// part of it, acts beta C : D, with the rate of strain D and the elastic moduli C of the start.
+/// part of it, acts beta C : D, with the rate of strain D and the elastic moduli C of the start; on
+/// the change of shape alone where volumes are averaged, which particles do not have by themselves.
 struct StiffnessDamping {
   double beta = 0.0;                   // [s]
-  double pressure = 0.0, shear = 0.0;  // moduli rho c^2 of both waves [Pa]
+  double pressure = 0.0, shear = 0.0;  // moduli rho c^2 of both waves, as damped [Pa]
+  bool of_shape = false;
 
   MPM_HD bool active() const { return beta > 0.0; }
 };

@@ -194,7 +194,8 @@ struct Step {
   /// Strain, rotation and stress by the gradient dt sum v_i grad N_ip, eqs. (18)-(20); USF and USL
   /// take the nodes' velocities `v`, MUSL the remapped ones. Those of USF have brought the
   /// particles here: L is on the configuration at the end of what it strains, F = (1 - L dt)^-1.
-  /// And s_p = beta C : D, the stress of the material's damping.
+  /// And s_p = beta C : D, the stress of the material's damping, of the shape alone where volumes
+  /// are averaged.
   void update_stress(Vec<double, D> Node<D>::* velocity, bool at_end) {
     for (Body<D>& b : bodies) {
       if (!b.deforms()) continue;
@@ -206,9 +207,9 @@ struct Step {
               p.gradient[a][c] += (at_end ? dt_before : dt) * (b.nodes[i].*velocity)[a] * dN[c];
         });
         const auto strain = symmetric_part(p.gradient);
-        const double rate = b.beta / (at_end ? dt_before : dt);
-        p.s = (2.0 * rate * b.material.G) * strain +
-              Sym<double, D>::isotropic(rate * b.material.lambda * trace(strain));
+        const double rate = b.beta / (at_end ? dt_before : dt), G = b.material.G,
+                     lambda = averages ? -2.0 * G / D : b.material.lambda;
+        p.s = (2.0 * rate * G) * strain + Sym<double, D>::isotropic(rate * lambda * trace(strain));
         if (at_end) p.gradient = seen_from_start(p.gradient);
       }
       if (averages) average_gradients(*this, b);

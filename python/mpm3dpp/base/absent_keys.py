@@ -43,10 +43,20 @@ _INSTEAD = {
     **dict.fromkeys(("include", "includes"), _INCLUDE),
 }
 
+# What stands in another table here.
+_OF_PAIRS = (
+    "it is of two bodies: give contact.{0}, or one of its own to a pair, [[contact.pair]] with "
+    "bodies = [..., ...] and {0}"
+)
+_ELSEWHERE = {key: _OF_PAIRS.format(key) for key in ("restitution", "friction")}
+
 
 def unknown_key(key: str, known: Iterable[str]) -> tuple[str, str]:
     """Return rule and remedy of a key that is not known; `known` are valid in its place."""
     instead = _INSTEAD.get(key.lower().replace("-", "_"))
     if instead is not None:
         return "is not in this version", instead
+    elsewhere = _ELSEWHERE.get(key.lower())
+    if elsewhere is not None:
+        return "is not a key of this table", elsewhere
     return "is not a known key", nearest(key, known)

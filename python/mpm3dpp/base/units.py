@@ -142,15 +142,18 @@ def _by_pint(text: str, number: str, name: str, unit: str) -> float:
     """Return the SI number as pint converts it."""
     import pint
 
+    unknown, remedy = f'has the unit "{name}", which is not known', _give(unit)
+    letters = [known for known, (_, of) in COMMON.items() if of == unit]
+    if meant := next((known for known in letters if known.lower() == name.lower()), None):
+        remedy = f'did you mean "{number} {meant}"? Capitals count; {remedy}'
     if _UNIT.fullmatch(name) is None:
-        raise CaseError(f'has the unit "{name}", which is not known', _give(unit), value=text)
+        raise CaseError(unknown, remedy, value=text)
     try:
         given = registry().Quantity(
             Decimal(number), registry().parse_units(name.replace("m3", "m^3"))
         )
     except Exception as error:  # pint's parser raises many kinds for text that is no unit
-        rule = f'has the unit "{name}", which is not known'
-        raise CaseError(rule, _give(unit), value=text) from error
+        raise CaseError(unknown, remedy, value=text) from error
     if unit == "" and "radian" in str(
         given.to_base_units().units
     ):  # Which is a plain number to pint.
@@ -279,7 +282,7 @@ class Vector(Quantity):
 
 def _give_vector(unit: str) -> str:
     example = DIMENSIONS.get(unit, ("", "1.0"))[1]
-    return f"give a list such as [{example}, {example}]"
+    return f"give a list such as [0, {example}]"
 
 
 Length = Annotated[float, Quantity("m")]

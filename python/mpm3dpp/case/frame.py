@@ -43,11 +43,17 @@ def check_frames(case: Case) -> Iterator[PydanticCustomError]:
         rule = 'does not go with grid.basis = "gimp", which has no affine part of a velocity'
         remedy = 'give grid.basis = "quadratic_bspline", or leave it out'
         yield violation(rule, remedy, path=("run", "short_wave_damping"))
+    if not own:
+        return
+    if case.contact_enabled:
+        yield from _at_nodes(case)
+    of_case = next(_of_case(case), None)
     for name in own:
-        for rule, remedy in (*_of_body(case, name), *_of_case(case, name)):
-            path = (*case.part_path(name), "frame")
-            yield violation(rule, remedy, value=MATERIAL, path=path)
-            break  # The next may follow from it.
+        # One each: the next may follow from it. What is of the case is told of the first.
+        found = next(_of_body(case, name), of_case if name == own[0] else None)
+        if found is not None:
+            rule, remedy = found
+            yield violation(rule, remedy, value=MATERIAL, path=(*case.part_path(name), "frame"))
 
 
 def _restitution(case: Case) -> tuple[str | int, ...]:
@@ -79,19 +85,23 @@ def _of_body(case: Case, name: str) -> Iterator[tuple[str, str]]:
         yield rule, updated
 
 
-def _of_contact(case: Case) -> Iterator[str]:
-    """Yield what `contact` has that is for contact at nodes: surfaces do without."""
-    plain = type(case.contact)()
-    for key in ("detection", "normal", "gap_distance", "normal_refresh_distance"):
-        if getattr(case.contact, key) != getattr(plain, key):
-            yield f"does not go with contact.{key}, which is for contact at nodes"
-    if "response" in case.contact.model_fields_set and case.contact.response != "springs":
-        yield f'does not go with contact.response = "{case.contact.response}", as it has springs'
-    if presses(case):
-        yield 'does not go with contact.interference = "pressed" yet'
+def _at_nodes(case: Case) -> Iterator[PydanticCustomError]:
+    """Refuse what `contact` has that is for contact at nodes: surfaces do without."""
+    given, plain = case.contact, type(case.contact)()
+    wrong = [
+        key
+        for key in ("detection", "normal", "gap_distance", "normal_refresh_distance")
+        if getattr(given, key) != getattr(plain, key)
+    ]
+    if "response" in given.model_fields_set and given.response != "springs":
+        wrong.append("response")
+    for key in wrong:
+        rule = f'is for contact at nodes, and bodies with frame = "{MATERIAL}" have none'
+        remedy = f'leave it out, or give frame = "{UPDATED}"'
+        yield violation(rule, remedy, value=getattr(given, key), path=("contact", key))
 
 
-def _of_case(case: Case, name: str) -> Iterator[tuple[str, str]]:
+def _of_case(case: Case) -> Iterator[tuple[str, str]]:
     """Yield what the rest of the case has, likewise."""
     updated = f'give frame = "{UPDATED}"'
     if case.grid.basis == "linear":
@@ -103,8 +113,9 @@ def _of_case(case: Case, name: str) -> Iterator[tuple[str, str]]:
     if case.contact_enabled and others:
         rule = f"does not go with contact with {others[0]}, which has another frame, yet"
         yield rule, f'give all frame = "{MATERIAL}", contact.enabled = false, or {updated[5:]}'
-    if case.contact_enabled:
-        yield from ((rule, f"leave it out, or {updated}") for rule in _of_contact(case))
+    if case.contact_enabled and presses(case):
+        rule = 'does not go with contact.interference = "pressed" yet'
+        yield rule, f"leave it out, or {updated}"
     if "absorbing" in case.grid.walls:
         yield "does not go with walls of grid.box that absorb yet", f"leave them out, or {updated}"
     if HOLDING & set(case.grid.walls):

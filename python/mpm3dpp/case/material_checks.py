@@ -11,6 +11,7 @@ from pydantic_core import PydanticCustomError
 from mpm3dpp.base.errors import Path, violation
 
 from .material import Material
+from .moduli import damping_viscosity
 
 
 def check_material(material: Material, path: Path) -> Iterator[PydanticCustomError]:
@@ -24,8 +25,8 @@ def check_material(material: Material, path: Path) -> Iterator[PydanticCustomErr
     if material.beta and not material.sound_speed():
         rule = "is of a material that does not deform, and has no stiffness"
         yield violation(rule, "remove it", path=(*path, "damping"))
-    if material.beta and material.volume_averaging:
-        rule = "does not go with volume_averaging, which would have to average its stress too"
+    if material.beta and material.volume_averaging and not damping_viscosity(material):
+        rule = "is of the shape alone with volume_averaging, and a fluid has no stiffness of that"
         yield violation(rule, "remove one of the two", path=(*path, "damping"))
     if material.eos is not None and not speed:
         rule = "has no stiffness at the start: its pressure does not rise when it is compressed"

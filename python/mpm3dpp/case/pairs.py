@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from pydantic_core import PydanticCustomError
 
 from mpm3dpp.base.errors import Path, nearest, violation
+from mpm3dpp.base.frames import MATERIAL
 
 from .matter import have_springs
 from .parts import PRESSED
@@ -113,6 +114,7 @@ def check_pressed(case: Case) -> Iterator[PydanticCustomError]:
     Yields:
         The violations, with their paths in the case.
     """
+    in_body = any(part.frame == MATERIAL for part in case.parts().values())
     asked: list[tuple[Path, str | None, list[str]]] = [
         (("contact", "interference"), case.contact.interference, []),
         *(
@@ -121,8 +123,8 @@ def check_pressed(case: Case) -> Iterator[PydanticCustomError]:
         ),
     ]
     for path, word, names in asked:
-        if word != PRESSED or not case.contact_enabled:
-            continue
+        if word != PRESSED or not case.contact_enabled or in_body:
+            continue  # Bodies on nodes of their own refuse it by themselves.
         if not case.has_springs:
             rule = "is for contact by springs, and here contact.response is impulses"
             yield violation(rule, 'give contact.response = "springs"', value=word, path=path)

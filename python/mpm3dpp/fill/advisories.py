@@ -4,23 +4,26 @@
 from __future__ import annotations
 
 import math
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from mpm3dpp.base.errors import key_text
-from mpm3dpp.base.frames import MATERIAL
+from mpm3dpp.base.frames import MATERIAL, UPDATED
 from mpm3dpp.base.model import CaseModel
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.detonation import EXPLOSIVE
 from mpm3dpp.case.frame import in_body
 from mpm3dpp.case.grid import CONTACT
 from mpm3dpp.case.initial import GEOSTATIC
-from mpm3dpp.ranks.world import World, together
+from mpm3dpp.case.moduli import damping_viscosity, moduli_of
+from mpm3dpp.ranks.world import World
 
 from .bond_notes import bond_notes
+from .detonation_notes import detonation_notes
 from .explosive_notes import explosive_notes
+from .frame_notes import frame_notes
+from .friction_notes import friction_notes
 from .gas_notes import gas_notes
 from .initial import at_rest
 from .interference import Interference, beyond_walls, interference_notes
@@ -56,10 +59,12 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *_materials(case),
         *_rigid(case),
         *bond_notes(case),
-        *_detonations(case, bodies, world),
+        *detonation_notes(case, bodies, world),
         *wall_notes(case),
         *off_walls(case, bodies),
         *surface_notes(case, bodies),
+        *frame_notes(case),
+        *friction_notes(case, bodies),
         *gas_notes(case),
         *response_notes(case),
         *explosive_notes(case),
@@ -95,9 +100,10 @@ def with_overlap(
         return told
     loose = [one for one in drawn if not one.pressed]
     known = interference_notes(case, loose)
+    frame = f'frame = "{UPDATED}" and ' if in_body(case) else ""
     who = "".join(
         f"; body.{one.second} is drawn {one.depth:.3g} m into body.{one.first}: give "
-        'contact.interference = "pressed" if that is a press fit'
+        f'{frame}contact.interference = "pressed" if that is a press fit'
         for one in loose
     )
     whose = "contact points" if in_body(case) else "particles"
@@ -116,7 +122,7 @@ def fastest(case: Case, bodies: Filled) -> float:
     for name, part in case.parts().items():
         material = case.material[part.material]
         c = 0.0 if case.is_rigid(name) else material.sound_speed()
-        q = material.beta * c**2 / case.grid.cell_size  # damped: docs/theory/damping.md
+        q = damping_viscosity(material) / material.density / case.grid.cell_size
         sound[name] = q + float(np.hypot(q, c))
     found = 0.0
     for name, filled in bodies.parts.items():
@@ -197,19 +203,24 @@ def _rigid(case: Case) -> list[str]:
 
 
 def _locking(case: Case) -> list[str]:
-    """Solids that hardly change their volume, in cells that make them too stiff."""
+    """Solids that hardly change their volume, in cells that make them too stiff.
+
+    Nodes that lie in the body do not: quadratic functions do not lock where they bend.
+    """
     found = []
+    bend = {
+        part.material
+        for part in case.parts().values()
+        if part.frame != MATERIAL and getattr(part, "motion", None) is None
+    }
     for name in case.materials_used:
         material = case.material[name]
-        given = material.strength.parameters
-        nu = given.get("nu", 0.0)
-        if "K" in given and "G" in given:
-            nu = (3 * given["K"] - 2 * given["G"]) / (6 * given["K"] + 2 * given["G"])
-        if nu > _INCOMPRESSIBLE and not material.volume_averaging:
-            instead = f" in place of material.{name}.damping.stiffness" if material.beta else ""
+        moduli = moduli_of(material)
+        nu = moduli.nu if moduli else 0.0
+        if nu > _INCOMPRESSIBLE and not material.volume_averaging and name in bend:
             found.append(
                 f"material.{name} has nu = {nu:.9g}, nearly incompressible, and is too stiff where "
-                f"it bends; give material.{name}.volume_averaging = true{instead}"
+                f"it bends; give material.{name}.volume_averaging = true"
             )
         if nu > _STIFFEST:
             found.append(
@@ -264,35 +275,3 @@ def _width(case: Case, part: FilledPart) -> float:
             extents = part.survey.upper[:, axis] - part.survey.lower[:, axis]
             least = min(least, (float(extents.min()) + part.spacing) / case.grid.cell_size)
     return least
-
-
-def _detonations(case: Case, bodies: Filled, world: World | None) -> list[str]:
-    """Explosives that nothing lights, and points that light nothing before the end of the run."""
-    explosives = {
-        name: part
-        for name, part in bodies.parts.items()
-        if case.material[part.material].strength.model == EXPLOSIVE
-    }
-    found = []
-    for name in explosives:
-        if not any(not d.bodies or name in d.bodies for d in case.detonation):
-            found.append(
-                f"{key_text(case.part_path(name))} is of an explosive that nothing lights, so that "
-                "it stays unburned; add [[detonation]] with a point"
-            )
-    for index, detonation in enumerate(case.detonation):
-        first = np.inf
-        for part in (explosives[name] for name in detonation.bodies or explosives):
-            speed = case.material[part.material].strength.parameters["D"]
-            for some in part.chunks():
-                distance = np.linalg.norm(some.positions - np.asarray(detonation.point), axis=1)
-                near = float(distance.min(initial=np.inf))
-                first = min(first, detonation.time + near / speed)
-        first = min(together(partial(float, first), world))
-        if first > case.run.end_time:
-            found.append(
-                f"detonation[{index}] lights nothing before the end of the run: it reaches an "
-                f"explosive at {first:.4g} s, and run.end_time = {case.run.end_time:.4g} s; "
-                "move the point, or give a later end"
-            )
-    return found

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.material import Material
+from mpm3dpp.case.moduli import moduli_of
 from mpm3dpp.case.pairs import is_bonded
 
 from .parts import Filled, FilledPart
@@ -101,11 +102,8 @@ def _by_velocities(part: FilledPart, material: Material) -> float:
 
 
 def _speed_in_a_bar(material: Material) -> float:
-    given = material.strength.parameters
-    modulus = given.get("E", 0.0)
-    if not modulus and "G" in given:
-        G, K = given["G"], given.get("K", 0.0)
-        modulus = 9.0 * K * G / (3.0 * K + G) if K else 3.0 * G
+    moduli = moduli_of(material)
+    modulus = moduli.E if moduli else 3.0 * material.strength.parameters.get("G", 0.0)
     return math.sqrt(modulus / material.density) if modulus else material.sound_speed()
 
 

@@ -39,6 +39,8 @@ class Results(Sampling, GrainResults, Shown):
         dimension: 2 or 3.
         cell_size: edge of a grid cell [m].
         origin: a corner of the grid [m], shape (3,).
+        walls: words of the faces x- x+ y- y+ z- z+ of the case's box; () without one.
+        box: its lower and upper corner [m], shape (2, dimension); None without one.
         units: name -> unit of each array.
         title, case_hash: of the case.
     """
@@ -66,6 +68,9 @@ class Results(Sampling, GrainResults, Shown):
         self.cell_size = run.cell_size
         self.origin = np.array(run.origin)
         self.units = run.units
+        whole = len(run.walls) == 6 and [len(c) for c in run.box] == [run.dimension] * 2
+        self.walls = tuple(run.walls) if whole else ()
+        self.box = np.array(run.box) if whole else None
 
     @property
     def fields(self) -> list[str]:

@@ -36,6 +36,8 @@ class RunTold(BaseModel):
     cell_size: Length
     origin: Annotated[list[FiniteFloat], Field(min_length=3, max_length=3)]
     units: dict[str, str]
+    walls: list[str] = []
+    box: list[list[FiniteFloat]] = []
     frames: Annotated[str, Field(pattern=r"^[^/\\\x00]+$")] | None = None
 
 

@@ -45,6 +45,8 @@ class ResultsWriter(FramesWriter):
         dimension: 2 or 3.
         cell_size: edge of a grid cell [m].
         origin: a corner of the grid [m].
+        walls, box: of the case's box, the words of its faces x- x+ y- y+ z- z+ and its lower and
+            upper corner [m]; nothing without one.
         fields: further columns of the core to store.
         compression: 0 for none, else the level of gzip, 1 to 9, after a shuffle of bytes.
         title: title of the case.
@@ -70,6 +72,8 @@ class ResultsWriter(FramesWriter):
         dimension: int,
         cell_size: float,
         origin: Sequence[float] = (),
+        walls: Sequence[str] = (),
+        box: Sequence[Sequence[float]] = (),
         fields: Sequence[str] = (),
         compression: int = 0,
         title: str = "",
@@ -91,6 +95,8 @@ class ResultsWriter(FramesWriter):
             "cell_size": float(cell_size),
             "origin": [*map(float, origin), 0.0, 0.0, 0.0][:3],
             "units": dict(rows["units"]) if rows else {},
+            "walls": [*walls],
+            "box": [[*map(float, corner)] for corner in box],
         }
         make_folder(self.path.parent)
         if rows is None:

@@ -19,6 +19,15 @@ from .parameters import check_parameters
 ACTIONS: dict[str, str] = _core.failure_actions[0]
 """What failure may do to a particle, `action` in a failure model's table."""
 
+_OTHER_NAMES = {
+    **dict.fromkeys(("newtonian", "viscous", "liquid", "water", "gas", "null"), "fluid"),
+    **dict.fromkeys(("hyperelastic", "rubber", "mooney_rivlin"), "neo_hookean"),
+    **dict.fromkeys(("plastic", "elastoplastic", "elastic_plastic", "von_mises"), "j2"),
+    **dict.fromkeys(("hooke", "linear_elastic"), "elastic"),
+    "gruneisen": "mie_gruneisen",
+}
+"""Names that other programs and books have for models."""
+
 
 class ChosenModel(CaseModel):
     """A model of the catalogue with its parameters.
@@ -83,7 +92,9 @@ def _chosen(kind: type[ChosenModel], model: Any, given: Any) -> ChosenModel:
     word, known = kind.kind, catalogue(kind.kind)
     if model not in known:
         rule = f"is not a known {KINDS[word]}"
-        raise violation(rule, nearest(str(model), known), path=(str(model),))
+        own = _OTHER_NAMES.get(str(model).lower(), "")
+        remedy = nearest(own if own in known else str(model), known)
+        raise violation(rule, remedy, path=(str(model),))
     mistakes: list[Exception] = []
     extra: dict[str, Any] = {}
     if kind is Failure and isinstance(given, dict) and "action" in given:

@@ -12,9 +12,9 @@ import numpy as np
 
 from .case_walls import draw_walls, draw_walls_in_space
 from .flat import draw_cells, draw_particles, set_view
-from .frames import paper
 from .grain_colours import colours_of_grains
 from .labels import length_unit
+from .sheet import paper
 from .style import body_colours, legend_of_bodies, new_figure, picture_path, save, styled
 
 

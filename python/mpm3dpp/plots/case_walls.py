@@ -51,6 +51,24 @@ def draw_walls(axes: Axes, walls: tuple[str, ...], corners: np.ndarray) -> list[
     return _legend(walls[:4])
 
 
+def draw_walls_in_view(
+    axes: Axes, walls: tuple[str, ...], box: np.ndarray, lower: np.ndarray, upper: np.ndarray
+) -> None:
+    """Draw those of the walls of a 2D box that cross a region, as far as they lie in it.
+
+    Args:
+        axes: with limits set.
+        walls: as for `draw_walls`.
+        box: lower and upper of the box, in the unit of the axes, shape (2, 2).
+        lower, upper: of the region, likewise.
+    """
+    seen = [
+        word if lower[face // 2] <= box[face % 2, face // 2] <= upper[face // 2] else "free"
+        for face, word in enumerate(walls[:4])
+    ]
+    draw_walls(axes, tuple(seen), np.clip(box, lower, upper))
+
+
 def draw_walls_in_space(
     axes: Axes,
     camera: Camera,

@@ -4,8 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from itertools import cycle
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -89,16 +88,28 @@ def save_energies(
 
 @dataclass
 class _Run:
-    """What is drawn: the history of a run, and the contact force of each pair."""
+    """What is drawn: the history of a run, and the contact force of each pair.
+
+    How bodies came to rest before the time 0 is left out, unless nothing has followed.
+    """
 
     history: dict[str, np.ndarray]
     dimension: int
     forces: dict[str, np.ndarray]
+    colours: dict[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        begun = self.history["time"] >= 0.0
+        if begun.any() and not begun.all():
+            self.history = {name: rows[begun] for name, rows in self.history.items()}
+            self.forces = {name: rows[begun] for name, rows in self.forces.items()}
         factor, self.unit = prefix(float(np.nanmax(self.history["time"], initial=0.0)), "s")
         self.time = self.history["time"] * factor
         self.per = "/m" if self.dimension == 2 else ""
+
+    def colour_of(self, name: str) -> str:
+        """Return the colour of a term of the ledger, the same in all panels."""
+        return self.colours.setdefault(name, PALETTE[len(self.colours) % len(PALETTE)])
 
 
 def _energies(axes: Axes, run: _Run) -> None:
@@ -109,8 +120,8 @@ def _energies(axes: Axes, run: _Run) -> None:
         if np.abs(history[name]).max(initial=0.0) > 1e-4 * scale:
             curves[name] = history[name]
     factor, unit = prefix(max(np.abs(c).max(initial=0.0) for c in curves.values()), unit)
-    for colour, (label, curve) in zip(cycle(PALETTE), curves.items(), strict=False):
-        axes.plot(time, factor * curve, color=colour, label=label)
+    for label, curve in curves.items():
+        axes.plot(time, factor * curve, color=run.colour_of(label), label=label)
     total = factor * _total(history)
     axes.plot(time, total, color="black", lw=1.0, ls=(0, (4, 2)), label="total")
     axes.set_ylabel(f"energy [{unit}]")
@@ -132,14 +143,13 @@ def _ledger(axes: Axes, run: _Run) -> None:
     time, history = run.time, run.history
     scale = _scale(history)
     least = 1e-18
-    colours = cycle(PALETTE)
     parts = [name for name in ERROR_PARTS if name in history]  # Older tables have fewer.
     for name in (*_OTHERS, "numerical", *parts):
         curve = np.abs(history[name]) / scale
         if curve.max(initial=0.0) > least:
             style = (0, (1, 1)) if name in ERROR_PARTS else "-"
             label = name.replace("_", ", ")
-            axes.plot(time, _positive(curve), color=next(colours), ls=style, label=label)
+            axes.plot(time, _positive(curve), color=run.colour_of(name), ls=style, label=label)
     residual = np.abs(history["residual"]) / scale
     if residual.max(initial=0.0) > least:
         axes.plot(time, _positive(residual), color="black", lw=0.7, label="residual")

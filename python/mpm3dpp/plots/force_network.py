@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .case_walls import draw_walls_in_view
 from .flat import draw_particles, set_view
-from .frames import drawn, paper, sizes_of, view_of
+from .frames import drawn, sizes_of, view_of
 from .labels import at_time, length_unit, prefix
 from .paint import ColourBar, draw_bar
+from .sheet import paper
 from .style import colour_scale, new_figure, save, styled
 
 if TYPE_CHECKING:
@@ -67,6 +69,9 @@ def save_force_network(results: Results, frame: int, path: Path) -> Path | None:
                 colours,
                 grains=arrays.get("grain"),
             )
+            if results.box is not None:
+                corners = length * np.array([lower, upper])
+                draw_walls_in_view(axes, results.walls, length * results.box, *corners)
         from matplotlib.collections import LineCollection
 
         colour_map, norm = colour_scale("force", 0.0, factor * most)

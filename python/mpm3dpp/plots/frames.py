@@ -14,13 +14,15 @@ from mpm3dpp.base.errors import CaseError
 from mpm3dpp.io.rows import takes_part
 
 from .arrows import draw_arrows, fastest_of
+from .case_walls import draw_walls_in_view
 from .flat import draw_particles, set_view
 from .grain_colours import colours_of_grains
 from .labels import at_time, choose, length_unit
 from .line import draw_line, line_axis
 from .look import PLAIN, Look
 from .paint import BY_NAME, ColourBar, colour_range, draw_bar, paint
-from .style import DPI, legend_of_bodies, new_figure, save, styled
+from .sheet import paper, sheet
+from .style import DPI, legend_of_bodies, save, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -55,7 +57,6 @@ class View:
 PLACED = ("size", "body", "grain", "material", "failed")
 """Arrays that say what is drawn where."""
 
-_SIZED = (7.0, 4.5)  # Least inches of a picture whose pixels are given: its text grows with it.
 _FILLED = (0.8, 0.8)  # Share of a picture of a given size that the image of particles fills.
 
 
@@ -191,17 +192,6 @@ def draw_frame(
     return figure
 
 
-def sheet(inches: tuple[float, float], dpi: float, look: Look) -> Figure:
-    """A figure of a size in inches, or of the pixels that were asked for."""
-    if look.size is None:
-        return new_figure(*inches, dpi)
-    dpi = min(pixels / least for pixels, least in zip(look.size, _SIZED, strict=True))
-    width, height = ((pixels + 0.01) / dpi for pixels in look.size)  # Cut to whole ones.
-    figure = new_figure(width, height, dpi)
-    figure.whole = True
-    return figure
-
-
 def _draw_flat(
     results: Results,
     arrays: dict[str, np.ndarray],
@@ -220,6 +210,9 @@ def _draw_flat(
     points = factor * arrays["position"][:, :2].astype(float)
     sizes = factor * sizes_of(arrays, results)
     draw_particles(axes, points, sizes, arrays["body"], colours, grains=arrays.get("grain"))
+    if results.box is not None:
+        corners = factor * np.array([view.lower, view.upper])[:, :2]
+        draw_walls_in_view(axes, results.walls, factor * results.box, *corners)
     if look.arrows:
         draw_arrows(axes, points, arrays["velocity"][:, :2], arrays["body"], view.fastest)
     return figure
@@ -287,11 +280,3 @@ def sizes_of(arrays: dict[str, np.ndarray], results: Any) -> np.ndarray:
     if "size" in arrays:
         return arrays["size"]
     return np.full(len(arrays["position"]), 0.5 * results.cell_size, dtype=np.float32)
-
-
-def paper(aspect: float) -> tuple[float, float]:
-    """Width and height in inches of a picture whose region has this width over height."""
-    aspect = min(max(aspect, 0.25), 5.0)
-    width = 7.0 if aspect >= 1.2 else 5.2
-    height = width / aspect + 0.7
-    return (width, height) if height <= 8.0 else (width * 8.0 / height + 1.0, 8.0)

@@ -169,6 +169,7 @@ def _results_writer(
 ) -> ResultsWriter:
     """Return the writer of the frames; `kept`: those that are there, as `ResultsWriter.rows`."""
     case, ranks = simulation.case, world()
+    box = case.grid.box
     return ResultsWriter(
         folder / RESULTS,
         bodies=simulation.parts,
@@ -176,6 +177,8 @@ def _results_writer(
         dimension=case.grid.dimension,
         cell_size=case.grid.cell_size,
         origin=case.grid.lower,
+        walls=case.grid.walls if box else (),
+        box=(box.lower, box.upper) if box else (),
         fields=fields_of(case),
         compression=case.output.compression,
         title=case.title,

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Elastic bodies without any loss that lie on friction, and may tremble on it."""
+
+from __future__ import annotations
+
+import math
+
+from mpm3dpp.base.errors import key_text
+from mpm3dpp.case.case import Case
+from mpm3dpp.case.frame import in_body
+from mpm3dpp.case.grid import CONTACT
+from mpm3dpp.case.moduli import moduli_of
+from mpm3dpp.case.pairs import listed_pairs
+
+from .parts import Filled, FilledPart
+
+_LOSSLESS = ("elastic", "neo_hookean")
+_RATIO = 0.01  # Of critical damping, at the slowest shear waves: a quarter of one to a thickness.
+
+
+def friction_notes(case: Case, bodies: Filled) -> list[str]:
+    """Return a sentence for each material of which bodies lie on friction and lose nothing else.
+
+    Constant friction drives waves along the surfaces of elastic bodies (Adams 1995), and what
+    vibrates walks where it should stick. In the updated frame the nodes take the waves.
+    """
+    if not any(case.run.gravity) or case.run.settle or case.run.short_wave_damping:
+        return []
+    trembling: dict[str, list[str]] = {}
+    for name in _on_friction(case):
+        part = case.parts()[name]
+        material = case.material[part.material]
+        lossless = material.strength.model in _LOSSLESS and not material.failure
+        if lossless and not material.beta and part.damping is None and not case.is_rigid(name):
+            trembling.setdefault(part.material, []).append(name)
+    return [_sentence(case, bodies, names) for names in trembling.values()]
+
+
+def _on_friction(case: Case) -> list[str]:
+    """Return the entries on nodes of their own that others, or walls, rub without restitution."""
+    if not case.contact_enabled:
+        return []
+    parts, firsts = case.parts(), case.first_bodies()
+    listed, usual = listed_pairs(case), case.contact
+
+    def rubs(first: str, second: str) -> bool:
+        pair = listed.get((min(firsts[first], firsts[second]), max(firsts[first], firsts[second])))
+        friction, restitution = usual.friction, usual.restitution
+        if pair is not None:
+            friction = friction if pair.friction is None else pair.friction
+            restitution = restitution if pair.restitution is None else pair.restitution
+        bonded = pair is not None and pair.bonded
+        return friction > 0.0 and restitution == 1.0 and not bonded
+
+    walls = CONTACT in case.grid.walls and usual.friction > 0.0 and usual.restitution == 1.0
+    return [
+        name
+        for name in in_body(case)
+        if walls
+        or any(rubs(name, other) for other in parts if other != name or name in case.grains)
+    ]
+
+
+def _sentence(case: Case, bodies: Filled, names: list[str]) -> str:
+    key = f"material.{case.parts()[names[0]].material}"
+    material = case.material[case.parts()[names[0]].material]
+    moduli = moduli_of(material)
+    assert moduli is not None
+    waves = math.sqrt(moduli.G / material.density)
+    thickness = min(_thickness(bodies.parts[name]) for name in names)
+    beta = 2.0 * _RATIO / (0.5 * math.pi * waves / thickness)
+    others = f" and {len(names) - 1} more" if len(names) > 1 else ""
+    return (
+        f"{key_text(case.part_path(names[0]))}{others} of {key}: what is elastic and loses nothing "
+        "may tremble on friction and slide where it should stick; give "
+        f'{key}.damping.stiffness, for example "{1e6 * beta:.2g} us" (a hundredth of critical at '
+        "its slowest shear waves), run.settle or contact.restitution"
+    )
+
+
+def _thickness(part: FilledPart) -> float:
+    """Return the least extent of a body [m]."""
+    return float((part.survey.upper - part.survey.lower).min()) + part.spacing

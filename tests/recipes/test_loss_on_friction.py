@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A nearly incompressible block on friction: what check advises for it, it sticks with."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any
+
+import pytest
+
+from in_body import part
+from mpm3dpp import Case, Simulation
+from mpm3dpp.fill.advisories import notes
+from mpm3dpp.fill.build import build
+
+SLOPE = math.radians(20.0)
+
+
+def block(friction: float, **material: Any) -> Case:
+    """40 x 20 mm of rubber on a slope of 20 degrees, by a case file."""
+
+    def turned(lower: list[float], upper: list[float]) -> dict[str, Any]:
+        return {
+            "rotate": {
+                "shape": {"box": {"lower": lower, "upper": upper}},
+                "angle": -SLOPE,
+                "about": [0.0, 0.0],
+            }
+        }
+
+    rubber = {"density": 1100.0, "strength": {"neo_hookean": {"K": 10e6, "G": 1e6}}, **material}
+    return Case.model_validate(
+        {
+            "grid": {"dimension": 2, "cell_size": 5e-3},
+            "run": {"end_time": 0.15, "gravity": [0.0, -9.81]},
+            "contact": {"friction": friction},
+            "material": {"rubber": rubber},
+            "body": {
+                "block": {
+                    "material": "rubber",
+                    "frame": "material",
+                    "shape": turned([0.0, 0.0], [0.04, 0.02]),
+                },
+                "slope": {
+                    "material": "rubber",
+                    "motion": "fixed",
+                    "shape": turned([-0.02, -0.02], [0.1, 0.0]),
+                },
+            },
+        }
+    )
+
+
+def advised(case: Case) -> float:
+    """Return beta of the one note that there is [s]."""
+    [note] = notes(case, build(case))
+    found = re.search(r'material\.rubber\.damping\.stiffness, for example "([\d.]+) us"', note)
+    assert found and "body.block of material.rubber" in note
+    return float(found[1]) * 1e-6
+
+
+def down(simulation: Simulation, end: float) -> float:
+    """Return how far down the slope the block lies at a time [m]."""
+    simulation.advance(10**7, end)
+    x, y = part(simulation, "centre_x"), part(simulation, "centre_y")
+    return x * math.cos(SLOPE) - y * math.sin(SLOPE)
+
+
+@pytest.mark.parametrize("averages", [False, True])
+def test_a_block_sticks_with_the_loss_that_is_advised(averages: bool) -> None:
+    """.003 mm in .15 s, which its weight shears it by; 2.2 mm without a loss, hopping."""
+    beta = advised(block(0.5, volume_averaging=averages))
+    simulation = Simulation(block(0.5, volume_averaging=averages, damping={"stiffness": beta}))
+    ways = [down(simulation, end) for end in (0.0, 0.1, 0.15)]
+    assert abs(ways[2] - ways[0]) < 1e-5
+    assert abs(ways[2] - ways[1]) < 1e-7
+
+
+@pytest.mark.parametrize("averages", [False, True])
+def test_a_block_slides_as_far_as_friction_lets_it(averages: bool) -> None:
+    """By Coulomb's law g (sin - mu cos), once its weight has come on."""
+    beta = advised(block(0.3, volume_averaging=averages))
+    simulation = Simulation(block(0.3, volume_averaging=averages, damping={"stiffness": beta}))
+    x = [down(simulation, end) for end in (0.05, 0.1, 0.15)]
+    law = 9.81 * (math.sin(SLOPE) - 0.3 * math.cos(SLOPE))
+    assert x[2] - 2.0 * x[1] + x[0] == pytest.approx(law * 0.05**2, rel=0.01)
+
+
+def test_whose_loss_is_known_is_not_told() -> None:
+    for material in (
+        {"damping": {"stiffness": 1e-6}},
+        {"strength": {"j2": {"E": 3e6, "nu": 0.3, "Y0": 1e6}}},
+    ):
+        case = block(0.5, **material)
+        assert notes(case, build(case)) == []
+    assert notes(block(0.0), build(block(0.0))) == []
+
+
+def test_a_fluid_has_no_loss_of_shape() -> None:
+    liquid = {
+        "density": 1000.0,
+        "strength": {"fluid": {}},
+        "eos": {"tait": {"c0": 100.0}},
+        "volume_averaging": True,
+        "damping": {"stiffness": 1e-6},
+    }
+    tables = block(0.0).table()
+    tables["material"]["rubber"] = liquid
+    del tables["body"]["block"]["frame"]
+    with pytest.raises(ValueError, match="is of the shape alone with volume_averaging"):
+        Case.model_validate(tables)
