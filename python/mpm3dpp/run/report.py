@@ -7,11 +7,13 @@ import math
 from collections import Counter
 from typing import Any
 
+from mpm3dpp.base.frames import MATERIAL
 from mpm3dpp.io.manifest import Manifest
 
 _PAIRS_SHOWN = 10
 _BODIES_SHOWN = 10
 _ROUNDING = 1e-9  # Components of a velocity that are less than this share of it are none.
+_TURNING = 1e-3  # Twice the share of a body's kinetic energy in its spin, from which that is told.
 _OF_A_KIND = 3  # warnings shown
 _NUMERICAL_WARNING = 0.05
 _CROWD = 5  # Bodies at a node, beyond which impulses of all pairs take many sweeps ...
@@ -48,13 +50,13 @@ def contact_table(manifest: Manifest) -> list[str]:
     crowd = f", {contact.bodies_per_node_max} bodies at a node at most"
     if contact.touching_points_max:
         where = (
-            f"{contact.touching_points:,} points of surfaces touch at the end, "
+            f"points of surfaces that touch: {contact.touching_points:,} at the end, "
             f"{contact.touching_points_max:,} at most"
         )
         crowd = ""
     lines = [
-        f"contact: {contact.bodies:,} bodies, {where}, {pairs:,} "
-        f"{'pair' if pairs == 1 else 'pairs'}{crowd}, {contact.peak_bytes / 2**20:.2f} MiB, "
+        f"contact: {contact.bodies:,} {'body' if contact.bodies == 1 else 'bodies'}, {where}, "
+        f"{pairs:,} {'pair' if pairs == 1 else 'pairs'}{crowd}, {contact.peak_bytes / 2**20:.2f} MiB, "
         f"{share:.1%} of the step's time"
     ]
     if contact.unconverged_nodes:
@@ -103,13 +105,31 @@ def body_lines(manifest: Manifest) -> list[str]:
         final = [v if abs(v) > _ROUNDING * after else 0.0 for v in velocities[1]]
         eroded = found["final"].get("eroded_mass", 0.0)
         lines.append(
-            f"{name}: {before:.4g} -> {after:.4g} m/s ({_listed(final)}), kinetic energy "
-            f"{energies} {unit}" + (f", eroded {eroded:.4g} kg{unit[1:]}" if eroded else "")
+            f"{name}: {before:.4g} -> {after:.4g} m/s ({_listed(final)}){_spins(found, flat)}, "
+            f"kinetic energy {energies} {unit}"
+            + (f", eroded {eroded:.4g} kg{unit[1:]}" if eroded else "")
         )
     if len(lines) > _BODIES_SHOWN:
         more = len(lines) - _BODIES_SHOWN
         lines = [*lines[:_BODIES_SHOWN], f"... and {more} more bodies, in manifest.json"]
     return lines
+
+
+def _spins(found: dict[str, dict[str, float]], flat: bool) -> str:
+    """Return how fast a body turns before and after, where that has a share of its energy."""
+    axes = "z" if flat else "xyz"
+    turns = any(
+        sum(state.get(f"spin_{x}", 0.0) * state.get(f"angular_momentum_{x}", 0.0) for x in axes)
+        > _TURNING * state.get("kinetic", 0.0)
+        for state in (found["initial"], found["final"])
+    )
+    if not turns:
+        return ""
+    spins = [[found[k][f"spin_{x}"] for x in axes] for k in ("initial", "final")]
+    if flat:
+        return f", spin {spins[0][0]:.4g} -> {spins[1][0]:.4g} rad/s"
+    before, after = (math.hypot(*spin) for spin in spins)
+    return f", spin {before:.4g} -> {after:.4g} rad/s ({_listed(spins[1])})"
 
 
 def energy_line(manifest: Manifest) -> str:
@@ -122,6 +142,12 @@ def _restitution_takes(case: dict[str, Any]) -> bool:
     """Return whether a case asks for a restitution below 1, of all or of a pair."""
     contact = case.get("contact", {})
     return any(one.get("restitution", 1.0) < 1.0 for one in (contact, *contact.get("pair", [])))
+
+
+def _nodes_in_bodies(case: dict[str, Any]) -> bool:
+    """Return whether no body has its nodes in space, so that there is no transfer."""
+    parts = [*case.get("body", {}).values(), *case.get("grains", {}).values()]
+    return all(part.get("frame") == MATERIAL or part.get("motion") is not None for part in parts)
 
 
 def energies_made(manifest: Manifest) -> tuple[str, bool]:
@@ -154,7 +180,7 @@ def energies_made(manifest: Manifest) -> tuple[str, bool]:
     if taken:
         line += "; what a restitution takes is in contact"
     transfer = manifest.case.get("run", {}).get("transfer", "flip")
-    if transfer != "flip":
+    if transfer != "flip" and not _nodes_in_bodies(manifest.case):
         line += "; what run.transfer takes is in it"
         if large and "aflip" in transfer:
             line += "; `mpm3dpp study CASE` tells whether smaller cells make it less"

@@ -65,6 +65,15 @@ def steps_in_words(case: Case, bodies: Filled) -> str:
     return f"up to {math.ceil(case.run.settle.longest / step):,} steps to settle, then {steps}"
 
 
+def _stepping(case: Case) -> str:
+    """Return how what deforms is stepped, in its own frame or by the transfer of the run."""
+    own, deform = in_body(case), [name for name in case.parts() if not case.is_rigid(name)]
+    updated = f"{case.run.scheme}, {case.run.transfer.word}"
+    if not own:
+        return updated
+    return "leapfrog of nodes in bodies" + ("" if len(own) == len(deform) else f"; {updated}")
+
+
 def _step_rule(case: Case, bodies: Filled) -> str:
     if case.run.time_step is not None:
         return ""
@@ -216,7 +225,7 @@ def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
         f"{bounds}, {case.grid.basis} basis",
         *condition_lines(case),
         f"contact: {contact}",
-        f"time: {case.run.scheme}, {case.run.transfer.word}, {_step_rule(case, bodies)}"
+        f"time: {_stepping(case)}, {_step_rule(case, bodies)}"
         f"end {case.run.end_time:.6g} s, "
         f"step about {time_step(case, bodies):.3g} s, "
         f"{steps_in_words(case, bodies)}, {frames_in_words(case, bodies)}",
