@@ -293,7 +293,7 @@ def test_parts_are_the_whole(shape: Shape, parts: int) -> None:
         Translate(shape=Sphere(centre=(6, 6, 6), radius=0.3), by=(1, 2, 3)),
         Rotate(
             shape=Tube(centre=(1, 2, 3), inner_radius=2, outer_radius=4, height=5, axis="x"),
-            angle=30,
+            angle="30 deg",
             axis=(0, 0, 1),
         ),
     ],

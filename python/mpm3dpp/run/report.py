@@ -8,6 +8,7 @@ from collections import Counter
 from typing import Any
 
 from mpm3dpp.base.frames import MATERIAL
+from mpm3dpp.case.grid import CONTACT
 from mpm3dpp.io.manifest import Manifest
 
 _PAIRS_SHOWN = 10
@@ -56,8 +57,8 @@ def contact_table(manifest: Manifest) -> list[str]:
         crowd = ""
     lines = [
         f"contact: {contact.bodies:,} {'body' if contact.bodies == 1 else 'bodies'}, {where}, "
-        f"{pairs:,} {'pair' if pairs == 1 else 'pairs'}{crowd}, {contact.peak_bytes / 2**20:.2f} MiB, "
-        f"{share:.1%} of the step's time"
+        f"{pairs:,} {'pair' if pairs == 1 else 'pairs'}{crowd}, "
+        f"{contact.peak_bytes / 2**20:.2f} MiB, {share:.1%} of the step's time"
     ]
     if contact.unconverged_nodes:
         lines.append(
@@ -241,13 +242,17 @@ def load_lines(manifest: Manifest) -> list[str]:
 
 
 def wall_lines(manifest: Manifest) -> list[str]:
-    """Return a line for each face of the box that bodies have pushed: force, pressure, impulse."""
-    flat = manifest.case.get("grid", {}).get("dimension") == 2
+    """Return a line for each face of the box that bodies have pushed: force, pressure, impulse.
+
+    There is no pressure of faces that are contact, which bodies touch here and there.
+    """
+    grid = manifest.case.get("grid", {})
+    flat, words = grid.get("dimension") == 2, grid.get("box", {}).get("walls", {})
     per, numbers = ("/m", slice(0, 2)) if flat else ("", slice(0, 3))
     return [
-        f"wall {name}: at the end force [{_listed(wall.force[numbers])}] N{per}, pressure "
-        f"{wall.pressure:.4g} Pa over the whole face; impulse "
-        f"[{_listed(wall.impulse[numbers])}] N s{per}"
+        f"wall {name}: at the end force [{_listed(wall.force[numbers])}] N{per}"
+        + ("" if words.get(name) == CONTACT else f", {wall.pressure:.4g} Pa over the whole face")
+        + f"; impulse [{_listed(wall.impulse[numbers])}] N s{per}"
         for name, wall in manifest.walls.items()
         if any(wall.impulse)
     ]

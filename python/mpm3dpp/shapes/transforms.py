@@ -61,11 +61,15 @@ class Rotate(_Moved):
     about: Point | None = None
 
     @model_validator(mode="after")
-    def _axis_in_3d(self) -> Any:
+    def _axis_and_angle(self) -> Any:
         if self.axis is not None and not any(self.axis):
             raise violation(
                 "must not be zero", "give a direction such as [0, 0, 1]", path=("axis",)
             )
+        if abs(self.angle) > 2.0 * math.pi:
+            rule = f"is {self.angle:g} rad, more than a whole turn"
+            remedy = 'write its unit, "30 deg"; a plain number is in radians'
+            raise violation(rule, remedy, path=("angle",))
         return self
 
     def wrong_dimension(self, dimension: int, path: Path = ()) -> tuple[Path, str, str] | None:
