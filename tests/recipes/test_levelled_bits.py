@@ -30,7 +30,6 @@ def stacks(dimension: int) -> Case:
     def body(*corners: float, **more: Any) -> dict[str, Any]:
         return {"material": "m", "frame": "material", "shape": box(*corners), **more}
 
-    about = {"about": [14.0 * CELL, 0.0, 0.0][:dimension]}
     turn = 60.0 if dimension == 2 else [0.0, 0.0, 60.0]
     return Case.model_validate(
         {
@@ -42,7 +41,7 @@ def stacks(dimension: int) -> Case:
                 "slab": body(0.0, -3.0, 18.0, 0.0),
                 "slides": body(0.0, 0.0, 4.0, 4.0, velocity=[0.3, 0.0, 0.0][:dimension]),
                 "stays": body(7.0, 0.0, 11.0, 4.0),
-                "tips": body(14.0, 0.0, 18.0, 4.0, angular_velocity=turn, **about),
+                "tips": body(14.0, 0.0, 18.0, 4.0, angular_velocity=turn),
             },
         }
     )
