@@ -63,6 +63,7 @@ SHORTER = {
 WHOLE = (
     "docs/quick-start.md",
     "docs/tutorial.md",
+    "docs/how-to/choose-frame.md",
     "docs/how-to/shoot-through-a-plate.md",
     "docs/how-to/begin-under-weight.md",
     "docs/how-to/stop-and-go-on.md",

@@ -127,6 +127,8 @@ def _spins(found: dict[str, dict[str, float]], flat: bool) -> str:
     if not turns:
         return ""
     spins = [[found[k][f"spin_{x}"] for x in axes] for k in ("initial", "final")]
+    least = _ROUNDING * max(math.hypot(*spin) for spin in spins)
+    spins = [[s if abs(s) > least else 0.0 for s in spin] for spin in spins]
     if flat:
         return f", spin {spins[0][0]:.4g} -> {spins[1][0]:.4g} rad/s"
     before, after = (math.hypot(*spin) for spin in spins)
