@@ -10,6 +10,7 @@
 #include "mpm/run/derived_fields.hpp"
 #include "mpm/run/grain_rows.hpp"
 #include "mpm/run/part_rows.hpp"
+#include "mpm/surfaces/law.hpp"
 
 namespace mpm::bindings {
 namespace {
@@ -132,6 +133,7 @@ void add_catalogues(nb::module_& m) {
   m.attr("bases") = all_bases();
   m.attr("transfers") = all_transfers();
   m.attr("history_terms") = all_history_terms();
+  m.attr("most_cfl_of_surfaces") = most_cfl_of_springs;
   m.attr("part_columns") = described(part_columns);
   m.attr("grain_columns") = described(grain_columns);
   m.attr("contact_columns") = described(contact_columns);

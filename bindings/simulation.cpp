@@ -259,6 +259,7 @@ void def_records(SimulationClass& simulation) {
                                          d["overlapped_nodes"] = told.overlapped;
                                          d["touching_points"] = told.touching;
                                          d["touching_points_max"] = told.touching_max;
+                                         d["levelled_points"] = told.levelled;
                                          d["overlapped_nodes_max"] = told.overlapped_max;
                                          d["bodies_per_node_max"] = told.bodies_max;
                                          d["unconverged_nodes"] = told.unconverged;

@@ -64,7 +64,8 @@ struct Domain {
   std::int64_t step = 0;     // steps made
 
   std::vector<PatchSums<D>> sums;  // one per patch; with a device those of its bodies, and others
-  std::vector<int> sums_of;        // with a device, of which body each is; else empty
+  std::vector<NodeWork> work_of_nodes;  // scratch: of each patch
+  std::vector<int> sums_of;             // with a device, of which body each is; else empty
   // What walls have done to rigid bodies as a whole in the step, alike on all ranks [N m s; N s].
   Vector3 rigid_at_walls = Vector3::zero();
   FaceImpulses<D> rigid_at_faces;

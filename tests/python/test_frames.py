@@ -242,6 +242,13 @@ def test_bodies_that_meet_too_fast_are_told_of(fast: bool) -> None:
     assert not fast or "body.a and body.b approach at 0.28 of the speed of its waves" in told[0]
 
 
+def test_walls_that_are_met_too_fast_are_told_of_without_contact_of_bodies_too() -> None:
+    walls = f'{GRID}box = {{ {BOX}, walls = {{ x_max = "contact" }} }}\n'
+    text = CASE.replace(GRID, walls).replace("[body.a]\n", "[body.a]\nvelocity = [40, 0]\n")
+    [told] = [note for note in Simulation(Case.from_text(text)).notes if "approach at" in note]
+    assert "body.a and grid.box.walls.x_max approach at 0.34" in told
+
+
 def test_an_estimate_of_bodies_with_a_restitution(tmp_path: Path) -> None:
     """It times a block, or a heap, of the same frame; `check` prints it."""
     text = CASE.replace('[body.b]\nmaterial = "m"\n', f'[body.b]\nmaterial = "m"\n{A}')

@@ -66,7 +66,23 @@ def test_three_warnings_of_a_kind_are_shown() -> None:
 def test_what_pic_takes_is_no_reason_for_smaller_steps() -> None:
     told = manifest({"kinetic": 100.0}, {"kinetic": 50.0, "numerical": 50.0})
     assert energy_line(told).endswith("; a smaller run.cfl or smaller cells may help")
-    told.case = {"run": {"transfer": "pic"}}
+    told.case = {"run": {"transfer": "pic"}, "body": {"a": {"material": "m"}}}
+    assert energy_line(told).endswith("; what run.transfer takes is in it")
+
+
+def test_where_no_node_lies_in_space_no_transfer_takes_anything() -> None:
+    """Bodies that do not deform have none either, free ones and those that are moved."""
+    told = manifest({"kinetic": 100.0}, {"kinetic": 99.0, "numerical": 1.0})
+    soft = {"material": "soft", "frame": "material"}
+    table: dict[str, Any] = {
+        "run": {"transfer": "aflip"},
+        "material": {"soft": {"strength": {"elastic": {}}}, "stone": {"strength": {"rigid": {}}}},
+        "body": {"a": soft, "b": {"material": "stone"}, "c": {"material": "soft", "motion": {}}},
+        "grains": {"all": soft},
+    }
+    told.case = table
+    assert "run.transfer" not in energy_line(told)
+    told.case = {**table, "grains": {"all": {"material": "soft"}}}
     assert energy_line(told).endswith("; what run.transfer takes is in it")
 
 

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from in_body import CELL
-from mpm3dpp import Case
+from mpm3dpp import Case, Simulation
 from same_bits import check_same_bits
 
 LOAD = 1e4  # Gravity that presses blocks in by some thousandths of a cell [m/s^2].
@@ -45,6 +45,16 @@ def stacks(dimension: int) -> Case:
             },
         }
     )
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_what_is_levelled_falls_as_it_slides_and_ends_in_gaps(dimension: int) -> None:
+    simulation = Simulation(stacks(dimension))
+    begun = simulation.core.contact_summary()["levelled_points"]
+    assert begun > (10 if dimension == 2 else 100)
+    simulation.advance(60)
+    left = simulation.core.contact_summary()["levelled_points"]
+    assert 0.1 * begun < left < 0.9 * begun
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -92,3 +92,46 @@ def test_what_passes_through_the_plane_is_given_by_the_wall() -> None:
     assert walls["x_min"].impulse[0] != 0.0
     # Its records are of what bodies do to the faces.
     assert -given == pytest.approx(momentum, abs=1e-9 * abs(walls["x_min"].impulse[0]))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_layer_between_two_planes_is_the_same_from_either(dimension: int) -> None:
+    """A layer of one cell with one particle across it: each point feels images behind both walls,
+    which give it forces of the same size."""
+    wide = [CELL, 8 * CELL, 4 * CELL][:dimension]
+
+    def box(low: float, high: float) -> dict[str, Any]:
+        lower, upper = [0.0, low * CELL, 0.0], [wide[0], high * CELL, wide[-1]]
+        return {"box": {"lower": lower[:dimension], "upper": upper[:dimension]}}
+
+    body = {"material": "m", "frame": "material", "particles_per_cell": 1}
+    fall = [0.0, -5.0, 0.0][:dimension]
+    case = Case.model_validate(
+        {
+            "grid": {
+                "dimension": dimension,
+                "cell_size": CELL,
+                "box": {
+                    "lower": [0.0] * dimension,
+                    "upper": [CELL, 20 * CELL, 20 * CELL][:dimension],
+                    "walls": {"x_min": "slip", "x_max": "slip", "y_min": "fixed"},
+                },
+            },
+            "run": {"end_time": 1.0},
+            "material": {"m": {"density": 1000.0, "strength": {"elastic": {"E": 1e6, "nu": 0.3}}}},
+            "body": {
+                "anvil": {**body, "shape": box(0.0, 4.0)},
+                "hammer": {**body, "shape": box(4.1, 8.1), "velocity": fall},
+            },
+        }
+    )
+    simulation = Simulation(case)
+    simulation.advance(40)
+    assert simulation.core.contact_summary()["touching_points"] > 1
+    faces = {face.name: np.array(face.impulse) for face in simulation.core.walls()}
+    one, other = faces["x_min"], faces["x_max"]
+    assert one[0] != 0.0
+    assert one[0] == pytest.approx(-other[0], rel=1e-9)
+    assert one[1:] == pytest.approx(other[1:], abs=1e-9 * abs(one[0]))
+    # All of it moves along y as it would in a strip of any width.
+    assert np.abs(simulation.column("hammer", "velocity")[:, 0]).max() < 1e-9

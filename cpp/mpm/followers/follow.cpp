@@ -129,9 +129,10 @@ void take_from_leading(Domain<D>& domain, int at) {
 }
 
 template <int D>
-std::vector<std::uint8_t> patches_that_follow(Domain<D>& domain) {
+const std::vector<std::uint8_t>& patches_that_follow(Domain<D>& domain) {
   Followers<D>& followers = domain.followers;
-  std::vector<std::uint8_t> follow(domain.grid.patches.size(), 0);
+  std::vector<std::uint8_t>& follow = followers.follow;
+  follow.assign(domain.grid.patches.size(), 0);
   find_again(followers.patches, domain.grid);
   for (std::size_t k = 0; k < followers.patches.all.size(); ++k)
     follow[followers.patches.all[k].patch] = followers.taken.nodes[k].empty() ? 0 : 1;
@@ -153,8 +154,8 @@ template void give_to_leading<2>(Domain<2>&, int);
 template void give_to_leading<3>(Domain<3>&, int);
 template void take_from_leading<2>(Domain<2>&, int);
 template void take_from_leading<3>(Domain<3>&, int);
-template std::vector<std::uint8_t> patches_that_follow<2>(Domain<2>&);
-template std::vector<std::uint8_t> patches_that_follow<3>(Domain<3>&);
+template const std::vector<std::uint8_t>& patches_that_follow<2>(Domain<2>&);
+template const std::vector<std::uint8_t>& patches_that_follow<3>(Domain<3>&);
 template void give_number_to_leading<2>(Domain<2>&, int);
 template void give_number_to_leading<3>(Domain<3>&, int);
 template void take_number_from_leading<2>(Domain<2>&, int);

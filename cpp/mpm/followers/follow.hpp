@@ -16,7 +16,7 @@ void take_from_leading(Domain<D>& domain, int at);
 
 /// 1 of the patches with nodes that follow.
 template <int D>
-std::vector<std::uint8_t> patches_that_follow(Domain<D>& domain);
+const std::vector<std::uint8_t>& patches_that_follow(Domain<D>& domain);
 
 /// As vectors, numbers beside the displacements, which have no direction.
 template <int D>

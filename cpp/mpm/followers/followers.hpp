@@ -3,8 +3,8 @@
 // B-splines). Beyond an edge of a body that lies askew to the cells there are nodes that one
 // particle alone reaches; their motions that do not strain it are held by nothing, and their masses
 // may be next to none. So a node of a body on nodes of its own leads if a cell among the 3^D that
-// its function reaches is filled to 1.499 / 2^D at least, by more than one of 2^D particles, and
-// others follow: with j such a node and i those that lead near it,
+// its function reaches is filled to 1.499 / 2^D at least (by more than one particle where 2^D fill
+// it), and others follow: with j such a node and i those that lead near it,
 //   u_j = sum_i e_ji u_i,   e_ji = w_ji (1, X_i - X_j) . c_j,   w = |X_i - X_j|^-4,
 //   sum_i w_ji (1, X_i - X_j) (1, X_i - X_j)^T c_j = (1, 0),                                 (E1)
 // which is the linear field that meets theirs best: sum e = 1, sum e X_i = X_j, so that all motions
@@ -54,9 +54,10 @@ struct ForceBeyond {
 
 template <int D>
 struct Followers {
-  PatchesOfNodes<D> patches;     // that have any of them
-  SumsOfNodes<D> given, taken;   // (E2), for who leads; (E1), for who follows
-  Lists<ForceBeyond<D>> beyond;  // by place in `patches`
+  PatchesOfNodes<D> patches;         // that have any of them
+  SumsOfNodes<D> given, taken;       // (E2), for who leads; (E1), for who follows
+  Lists<ForceBeyond<D>> beyond;      // by place in `patches`
+  std::vector<std::uint8_t> follow;  // scratch: 1 of the patches with nodes that follow
   bool exist = false;  // on any rank: those without take part in what ranks tell each other
 
   std::size_t bytes() const {

@@ -121,4 +121,10 @@ PatchSums<D> total_of(const std::vector<PatchSums<D>>& patches, Comm& comm) {
   return total;
 }
 
+/// Sums over the nodes that a patch owns, with v before the step: A + B and G of the ledger and
+/// twice S_g, all but for the time step.
+struct NodeWork {
+  double work = 0.0, gravity_first = 0.0, gravity_second = 0.0;
+};
+
 }  // namespace mpm

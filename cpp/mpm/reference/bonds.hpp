@@ -20,7 +20,7 @@ template <int D>
 std::vector<Bond<D>> find_bonds(Surfaces<D>& surfaces) {
   std::vector<Bond<D>> bonds;
   surfaces.for_each_touch([&](const SurfaceTouch<D>& t) {
-    if (is_face(t.whom) || t.z > 1.25 * surfaces.e) return;
+    if (is_wall(t.whom) || t.z > 1.25 * surfaces.e) return;
     const auto b = static_cast<std::size_t>(t.whom);
     if (b == t.body || !surfaces.law_of(t.body, b).bonded) return;
     const ContactPoint<D>& c = surfaces.point(t);

@@ -36,7 +36,7 @@ double set_back_of(const Surfaces& surfaces, const SurfaceTouch<D>& t) {
 template <class Surfaces, int D>
 double sunk_where_drawn(const Surfaces& surfaces, const SurfaceTouch<D>& t) {
   const double e = surfaces.e;
-  if (is_face(t.whom) || t.whom == static_cast<Whom>(t.body)) return 0.0;
+  if (is_wall(t.whom) || t.whom == static_cast<Whom>(t.body)) return 0.0;
   if (!(t.z > e && t.z < 1.3 * e)) return 0.0;
   const Vec<double, D>& x = surfaces.bodies[t.body].points[t.point].x;
   double most = 0.0;

@@ -16,12 +16,14 @@ struct Meeting {
 /// (1 - e^2) N min(u_n / u_s, 1) with u_s = N dt / m*, acts between their motions as wholes at the
 /// middle of the contact. Along the surface a dashpot of that restitution (Tsuji, Tanaka & Ishida
 /// 1992), 2 beta (k m*)^(1/2) u_t, beta = -ln e / (pi^2 + ln^2 e)^(1/2), takes no more than .05 of
-/// what both have along it in a step, and than Coulomb's law leaves of mu N.
+/// what both have along it in a step, and than Coulomb's law leaves of mu times what the bodies
+/// feel of N; that bounds the friction of their points too, in the next step, and what these have
+/// more than it by now is taken back.
 template <int D>
 void restitute(Surfaces<D>& surfaces, const Meeting<D>& met, std::size_t a, Whom whom) {
   SurfaceBody<D>& first = surfaces.bodies[a];
   SurfaceBody<D>* const second =
-      is_face(whom) ? nullptr : &surfaces.bodies[static_cast<std::size_t>(whom)];
+      is_wall(whom) ? nullptr : &surfaces.bodies[static_cast<std::size_t>(whom)];
   const SurfaceLaw law = second ? surfaces.law_of(a, static_cast<std::size_t>(whom)) : surfaces.law;
   const double e = law.restitution, N = norm(met.push), dt = surfaces.step.dt;
   const auto light = [](const SurfaceBody<D>& b) {
@@ -38,9 +40,13 @@ void restitute(Surfaces<D>& surfaces, const Meeting<D>& met, std::size_t a, Whom
   const double beta = -ln / std::sqrt(pi * pi + ln * ln);
   const double mu = second ? law.mu : surfaces.step.walls.friction[axis_of(whom)][side_of(whom)];
   const Vector3 u_t = along(u, n);
-  const double drag = std::min({2.0 * beta * std::sqrt(met.k * m) * norm(u_t),
-                                0.05 * m / dt * norm(u_t), std::max(mu * N - norm(met.rub), 0.0)});
-  const Vector3 force = -taken * n - drag * normalised(u_t);
+  const double drag =
+      std::min({2.0 * beta * std::sqrt(met.k * m) * norm(u_t), 0.05 * m / dt * norm(u_t),
+                std::max(mu * (N - taken) - norm(met.rub), 0.0)});
+  surfaces.left[{a, whom}] = 1.0 - taken / N;
+  Vector3 force = -taken * n - drag * normalised(u_t);
+  const double allowed = mu * met.sizes * (1.0 - taken / N);
+  if (norm(met.rub) > allowed) force = force - (1.0 - allowed / norm(met.rub)) * met.rub;
   first.push_whole(x, force);
   if (second) second->push_whole(x, -1.0 * force);
 }
@@ -51,8 +57,8 @@ void restitute(Surfaces<D>& surfaces) {
   std::map<std::pair<std::size_t, Whom>, Meeting<D>> all;
   for (const SurfaceTouch<D>& t : surfaces.touches) {
     const auto b = static_cast<std::size_t>(t.whom);
-    if (!is_face(t.whom) && b == t.body) continue;
-    const bool is_first = is_face(t.whom) || t.body < b;
+    if (!is_wall(t.whom) && b == t.body) continue;
+    const bool is_first = is_wall(t.whom) || t.body < b;
     Meeting<D>& met = is_first ? all[{t.body, t.whom}] : all[{b, static_cast<Whom>(t.body)}];
     const double sign = is_first ? 1.0 : -1.0;
     met.push += sign * in_space<D>(t.push);
@@ -61,6 +67,7 @@ void restitute(Surfaces<D>& surfaces) {
     met.sizes += norm(t.push);
     met.k += t.k;
   }
+  surfaces.left.clear();
   for (const auto& [who, met] : all) restitute(surfaces, met, who.first, who.second);
 }
 

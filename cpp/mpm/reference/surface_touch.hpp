@@ -85,7 +85,7 @@ T of_all_faces(const std::map<int, T>& sums) {
 
 /// Whom a point touches: a body by its number, or a face of the box as -1 - (2 axis + side).
 using Whom = int;
-constexpr bool is_face(Whom whom) { return whom < 0; }
+constexpr bool is_wall(Whom whom) { return whom < 0; }
 constexpr int axis_of(Whom face) { return (-1 - face) / 2; }
 constexpr int side_of(Whom face) { return (-1 - face) % 2; }
 
@@ -116,7 +116,7 @@ struct SurfaceTouch {
 template <int D>
 std::pair<Whom, Whom> pair_of(const SurfaceTouch<D>& t) {
   const auto body = static_cast<Whom>(t.body);
-  return is_face(t.whom) ? std::pair(body, t.whom)
+  return is_wall(t.whom) ? std::pair(body, t.whom)
                          : std::pair(std::min(body, t.whom), std::max(body, t.whom));
 }
 

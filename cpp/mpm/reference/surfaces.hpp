@@ -24,6 +24,7 @@ struct Surfaces {
   std::map<Of, SurfaceLevelled<D>> levelled{};                       // b < 0, until they slide
   std::set<Of> bonded{};                                             // who does not push
   std::map<Of, SurfaceMemory<D>> kept{};                             // of who touches
+  std::map<std::pair<std::size_t, Whom>, double> left{};             // of N in the step before
   std::map<std::pair<Whom, Whom>, double> approaches{};              // so far, fastest [m/s]
   Height<D> height{e};
 
@@ -92,7 +93,7 @@ struct Surfaces {
       return 1.0 / std::sqrt(b.compliance() * b.body().material.density);
     };
     double c = waves(bodies[t.body]);
-    if (!is_face(t.whom)) c = std::min(c, waves(other(t)));
+    if (!is_wall(t.whom)) c = std::min(c, waves(other(t)));
     if (const auto before = approaches.find(pair_of(t)); before != approaches.end())
       approach = std::max(approach, before->second);
     return std::min({step.h * approach / c, 0.2 * step.h, 0.8 * e});
@@ -112,7 +113,7 @@ struct Surfaces {
 
   /// o = e - b - e zeta or e / 2 - b - z.
   double overlap(const SurfaceTouch<D>& t) const {
-    return (is_face(t.whom) ? 0.5 * e : e) - t.b - t.z;
+    return (is_wall(t.whom) ? 0.5 * e : e) - t.b - t.z;
   }
 
   /// f(touch) for those that may have begun, of the widest w.
@@ -176,7 +177,7 @@ struct Surfaces {
   /// The energy of the spring of a touch, of the places of p and of the points that it feels, (S3).
   template <class T>
   T energy(const SurfaceTouch<D>& t, const Vec<T, D>& p, const std::vector<Vec<T, D>>& q) const {
-    if (is_face(t.whom)) {
+    if (is_wall(t.whom)) {
       const T& x = p[axis_of(t.whom)];
       const T z = side_of(t.whom) == 0 ? x : height_over(t.whom, 0.0) - x;
       return t.k * stored<T>(0.5 * e - t.b - z, t.w);
@@ -224,7 +225,7 @@ struct Surfaces {
       return std::sqrt(b.compliance() / b.body().material.density);
     };
     const double A = point(t).A, of_a = admittance(bodies[t.body]), tiny = 1e-30 * e;
-    const double eta = is_face(t.whom) ? 0.4 * A / of_a : 0.2 * A / (of_a + admittance(other(t)));
+    const double eta = is_wall(t.whom) ? 0.4 * A / of_a : 0.2 * A / (of_a + admittance(other(t)));
     // k o, as it begins, and do/dt.
     const double spring =
         t.k * std::imag(stored(std::complex<double>(overlap(t), tiny), t.w)) / tiny;
@@ -249,8 +250,16 @@ struct Surfaces {
     }
   }
 
+  /// Of the normal force of the two, what they felt in the step before (restitution.hpp).
+  double left_of(const SurfaceTouch<D>& t) const {
+    const auto b = static_cast<std::size_t>(t.whom);
+    const bool is_first = is_wall(t.whom) || t.body < b;
+    const auto found =
+        left.find(is_first ? std::pair(t.body, t.whom) : std::pair(b, static_cast<Whom>(t.body)));
+    return found == left.end() ? 1.0 : found->second;
+  }
   double friction_of(const SurfaceTouch<D>& t) const {
-    if (is_face(t.whom)) return step.walls.friction[axis_of(t.whom)][side_of(t.whom)];
+    if (is_wall(t.whom)) return step.walls.friction[axis_of(t.whom)][side_of(t.whom)];
     return law_of(t.body, static_cast<std::size_t>(t.whom)).mu;
   }
 
@@ -262,7 +271,7 @@ struct Surfaces {
     const double begun = overlap(t) + 0.5 * t.w;
     t.slope = (2.0 * t.w / (t.k * begun * begun)) * t.push;
     const Vec<double, D> n = normalised(t.slope);
-    t.place = point(t).x - (is_face(t.whom) ? 1.0 : 0.5) * t.z * n;
+    t.place = point(t).x - (is_wall(t.whom) ? 1.0 : 0.5) * t.z * n;
     Vec<double, D> u = bodies[t.body].velocity(point(t), t.place);
     for (const Felt<D>& felt : t.felt)
       u -= felt.share * felt.mirror.vector(
@@ -272,7 +281,7 @@ struct Surfaces {
 
   /// (S2) at x_0: what s has along the normal by now is turned into the plane, to keep its length.
   void rub(SurfaceTouch<D>& t, const Vec<double, D>& u, Vec<double, D>& s) {
-    const double f = norm(t.push), mu = friction_of(t), k_t = 0.8 * t.k;
+    const double f = norm(t.push), mu = friction_of(t) * left_of(t), k_t = 0.8 * t.k;
     const Vec<double, D> n = normalised(t.push);
     t.rub = Vec<double, D>::zero();
     if (!(mu > 0.0 && f > 0.0)) return;

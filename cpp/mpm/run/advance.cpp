@@ -40,6 +40,19 @@ void look_or_trust(Simulation<D>& simulation) {
   look(simulation);
 }
 
+/// How long the coming step is, of the time that is left. Never a tiny one, in which forces would
+/// be rounding: the last two are of equal length; where steps are held, as their changes make
+/// energy, all that are left.
+template <int D>
+double step_towards(const Simulation<D>& simulation, double left) {
+  const double longest = simulation.next_time_step;
+  if (longest >= left) return left;
+  if (!holds_time_step(simulation)) return std::min(longest, 0.5 * left);
+  // What is left may be a whole number of steps but for rounding.
+  const double steps = std::ceil(left / longest - 1e-6);
+  return steps > 1.0 ? left / steps : left;
+}
+
 template <int D>
 void make_step(Simulation<D>& simulation, double time_after) {
   Domain<D>& domain = simulation.domain;
@@ -85,12 +98,11 @@ std::int64_t advance(Simulation<D>& simulation, std::int64_t max_steps, double e
   while (made < max_steps && domain.time < end_time && !simulation.failure) {
     const double next_stop = domain.settles() ? std::min(end_time, 0.0) : end_time;
     const double left = next_stop - domain.time;
-    const bool last = simulation.next_time_step >= left;
-    // Two last steps of equal length rather than a tiny one, in which forces would be rounding.
+    const double step = step_towards(simulation, left);
     // What is strained before forces (USF) has no velocity from before the time 0.
     domain.step_before = domain.time == 0.0 ? 0.0 : domain.time_step;
-    domain.time_step = last ? left : std::min(simulation.next_time_step, 0.5 * left);
-    make_step(simulation, last ? next_stop : domain.time + domain.time_step);
+    domain.time_step = step;
+    make_step(simulation, step == left ? next_stop : domain.time + step);
     ++made;
     // All ranks after the same step.
     const bool told = stop != nullptr && stop->load(std::memory_order_relaxed);

@@ -116,7 +116,8 @@ void check_rest(const Simulation<D>& simulation, const StateStream& stream) {
   const double earliest = settle ? -settle->longest : 0.0;
   check(domain.step >= 0 && domain.step < std::int64_t{1} << 62 && finite(domain.time) &&
             domain.time >= earliest && finite(domain.time_step, domain.step_before) &&
-            domain.step_before >= 0.0 && simulation.next_time_step > 0.0 && finite(domain.gravity),
+            domain.step_before >= 0.0 && simulation.next_time_step > 0.0 &&
+            finite(simulation.least_stable) && finite(domain.gravity),
         "its time is damaged");
   for (const ParticlePool<D>& pool : domain.pools)
     check(finite(pool.fastest) && pool.fastest >= 0.0, "its time is damaged");

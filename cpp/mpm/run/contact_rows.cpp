@@ -91,7 +91,7 @@ void add_row(std::span<const NodeContact> nodes, double time_step, std::vector<d
 template <int D>
 void add_row(const ActingBetween<D>& pair, double time_step, std::vector<double>& rows) {
   const double push = norm(pair.push);
-  if (is_face(pair.b) || !(push > 0.0)) return;
+  if (is_wall(pair.b) || !(push > 0.0)) return;
   const Vec<double, D> normal = (-1.0 / push) * pair.push;
   const double rub = norm(pair.on_first - dot(pair.on_first, normal) * normal);
   const auto add = [&](const Vec<double, D>& vector) {
@@ -104,7 +104,7 @@ void add_row(const ActingBetween<D>& pair, double time_step, std::vector<double>
   add(normal);
   rows.push_back(-pair.overlap);
   add(pair.on_first);
-  rows.push_back(rub > 0.0 && time_step > 0.0 ? pair.rubbed / (rub * time_step) : 0.0);
+  rows.push_back(rub > 0.0 && time_step > 0.0 ? pair.rub_work / (rub * time_step) : 0.0);
 }
 
 }  // namespace

@@ -138,6 +138,10 @@ ContactSummary contact_summary(const Simulation<D>& simulation) {
   told.overlapped = contact.counts.overlapped;
   told.touching = simulation.domain.surfaces.touching;
   told.touching_max = simulation.domain.surfaces.touching_max;
+  std::size_t levelled = 0;
+  for (const SurfacePart<D>& part : simulation.domain.surfaces.parts)
+    if (!part.foreign) levelled += part.levelled.size();
+  told.levelled = all(levelled);
   told.overlapped_max = contact.counts.overlapped_max;
   told.bodies_max = contact.counts.bodies_max;
   told.unconverged = all(contact.unconverged.load());

@@ -53,7 +53,7 @@ struct RemovedSum {
 /// What there was of contact, of all ranks.
 struct ContactSummary {
   std::size_t overlapped = 0, overlapped_max = 0, unconverged = 0, set_back_particles = 0,
-              bytes = 0, touching = 0, touching_max = 0;
+              bytes = 0, touching = 0, touching_max = 0, levelled = 0;
   int bodies_max = 0;
   double set_back_most = 0.0;  // [m]
 };

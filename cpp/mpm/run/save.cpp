@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* other_version = "it was made by another version of mpm3dpp";
 constexpr const char* other_case = "it was made from another case";
-constexpr std::int64_t format = 22;  // raised whenever exchange() or what a value means changes
+constexpr std::int64_t format = 23;  // raised whenever exchange() or what a value means changes
 
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {
@@ -116,7 +116,7 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
   exchange_sums(stream, domain.faces);
   stream.same(domain.rigid.size(), other_case);
   stream.array(std::span(domain.rigid));
-  stream(simulation.coarsenings, simulation.next_time_step, domain.ledger);
+  stream(simulation.coarsenings, simulation.next_time_step, simulation.least_stable, domain.ledger);
   for (ParticlePool<D>& pool : domain.pools) stream(pool.fastest);
   simulation.history.exchange(stream);
   stream(simulation.watch.steps, simulation.watch.looked);

@@ -46,7 +46,10 @@ struct Simulation {
   StageTimers timers;
   StepTraffic passed;
   double next_time_step = 0.0;  // [s]
-  int coarsenings = 0;          // of the cells so far
+  // The least that was stable since it was last looked at whether steps may be longer
+  // (time_step.cpp).
+  double least_stable = 0.0;  // [s]
+  int coarsenings = 0;        // of the cells so far
   Phase phase = Phase::building;
   std::vector<HeldBody> held;  // until the run has settled
   std::optional<Failure> failure;

@@ -86,9 +86,9 @@ bool is_finite(const Vec<double, D>& v) {
 template <int D>
 void write_part(Letter& letter, std::size_t number, const SurfacePart<D>& part) {
   write(letter, number);
-  write(letter, part.of_faces);
-  write(letter, part.moment_of_faces);
-  write(letter, part.at_faces);
+  write(letter, part.by_walls);
+  write(letter, part.moment_by_walls);
+  write(letter, part.at_walls);
   write(letter, part.kept.size());
   write_all<KeptOfContact<MemoryOfTouch<D>>>(letter, part.kept);
   write(letter, part.levelled.size());
@@ -97,9 +97,9 @@ void write_part(Letter& letter, std::size_t number, const SurfacePart<D>& part) 
 template <int D>
 void read_part(Reader& reader, Surfaces<D>& surfaces) {
   SurfacePart<D>& part = surfaces.parts[reader.read<std::size_t>()];
-  part.of_faces = reader.read<FaceImpulses<D>>();
-  part.moment_of_faces = reader.read<Vector3>();
-  part.at_faces = reader.read<bool>();
+  part.by_walls = reader.read<FaceImpulses<D>>();
+  part.moment_by_walls = reader.read<Vector3>();
+  part.at_walls = reader.read<bool>();
   part.kept.resize(reader.read<std::size_t>());
   for (auto& one : part.kept) one = reader.read<KeptOfContact<MemoryOfTouch<D>>>();
   part.levelled.resize(reader.read<std::size_t>());
@@ -181,16 +181,17 @@ void check_state(const Domain<D>& domain, Surfaces<D>& surfaces) {
           is_finite(on.moment_of_push) && is_finite(on.moment_of_rub));
   for (const ActingBetween<D>& pair : surfaces.between)
     check(is_body(pair.a) &&
-          (is_body(pair.b) ? pair.a < pair.b : pair.b >= opposite_face(D - 1, 1)) &&
-          is_finite(pair.on_first) && is_finite(pair.push) && std::isfinite(pair.rubbed));
+          (is_body(pair.b) ? pair.a < pair.b : pair.b >= opposite_wall(D - 1, 1)) &&
+          is_finite(pair.on_first) && is_finite(pair.push) && std::isfinite(pair.rub_work) &&
+          pair.left >= 0.0 && pair.left <= 1.0);
   check(std::ranges::is_sorted(surfaces.approaches, std::less<>{}));
   for (const Approach& one : surfaces.approaches)
-    check(is_body(one.a) && (is_body(one.b) || one.b >= opposite_face(D - 1, 1)) &&
+    check(is_body(one.a) && (is_body(one.b) || one.b >= opposite_wall(D - 1, 1)) &&
           one.speed >= 0.0 && std::isfinite(one.speed));
   for (SurfacePart<D>& part : surfaces.parts) {
-    bool finite = is_finite(part.moment_of_faces);
-    part.of_faces.for_each([&](double x) { finite = finite && std::isfinite(x); });
-    check(finite && (!part.at_faces || domain.grid.walls.exist));
+    bool finite = is_finite(part.moment_by_walls);
+    part.by_walls.for_each([&](double x) { finite = finite && std::isfinite(x); });
+    check(finite && (!part.at_walls || domain.grid.walls.exist));
   }
 }
 
@@ -207,7 +208,7 @@ void exchange_state(const Domain<D>& domain, Surfaces<D>& surfaces, StateStream&
       return is_finite(one.slid) && one.by >= 0.0 && std::isfinite(one.by) &&
              std::isfinite(one.first) && std::isfinite(one.gap);
     });
-    stream(part.of_faces, part.moment_of_faces, part.at_faces);
+    stream(part.by_walls, part.moment_by_walls, part.at_walls);
   }
   stream.vector(surfaces.on_hosts);
   stream.vector(surfaces.between);
@@ -215,7 +216,7 @@ void exchange_state(const Domain<D>& domain, Surfaces<D>& surfaces, StateStream&
   stream.vector(surfaces.on_bodies);
   for (const SurfacePart<D>& part : surfaces.parts)
     if (part.as_one)
-      stream.array(std::span(surfaces.places).subspan(part.first_point, part.points));
+      stream.array(std::span(surfaces.places).subspan(part.first_point, part.point_count));
   stream(surfaces.stored_push, surfaces.stored_rub, surfaces.touching, surfaces.touching_max);
   stream(surfaces.deepest.body, surfaces.deepest.overlap, surfaces.deepest.place);
   if (stream.restores()) surfaces.places_of_lists.resize(surfaces.points.size());

@@ -8,6 +8,7 @@
 #include "mpm/math/inverse.hpp"
 #include "mpm/run/find_failure.hpp"
 #include "mpm/run/use_device.hpp"
+#include "mpm/surfaces/law.hpp"
 
 namespace mpm {
 namespace {
@@ -16,10 +17,12 @@ namespace {
 // and is as strong as matter: at half of it hits of flat faces keep their energy to .5 %.
 constexpr double most_closing = 0.5;
 
-// At most, of the time in which the fastest wave passes a cell, as springs between surfaces bear
-// it: with H of (S1) blocks whose faces lie anywhere between nodes keep their energy in hits at .6,
-// and at .7 some make up to .6 of it again.
-constexpr double most_cfl_of_springs = 0.6;
+// Where all nodes lie in bodies a step is held, as steps that follow waves, which are faster in
+// what is squeezed, make energy of vibrations: by how much it may be longer than what `cfl` asks
+// for before it is shortened, how much longer that must be until the step is made longer, and how
+// often it is looked at, some periods of coarse bodies.
+constexpr double held_up_to = 1.15, longer_from = 1.3;
+constexpr std::int64_t steps_held = 100;
 
 /// How fast a particle passes the nodes [m/s]; 0 where they move with it.
 template <int D>
@@ -102,6 +105,22 @@ void note_fastest(Domain<D>& domain) {
     for (ParticlePool<D>& pool : domain.pools) pool.fastest = of_all;
 }
 
+/// Keep the step unless it is longer than what is stable by `up_to`, or has been much shorter for
+/// long.
+template <int D>
+void hold_time_step(Simulation<D>& simulation, double stable, double up_to) {
+  double& held = simulation.next_time_step;
+  double& least = simulation.least_stable;
+  const double anew = up_to / held_up_to;
+  const bool looks = simulation.domain.step % steps_held == 0;
+  least = least > 0.0 ? std::min(least, stable) : stable;
+  if (!(held > 0.0) || held > up_to * stable)
+    held = anew * stable;
+  else if (looks && anew * least > longer_from * held)
+    held = anew * least;
+  if (looks) least = stable;
+}
+
 template <int D>
 std::string choose_time_step(Simulation<D>& simulation) {
   note_fastest(simulation.domain);
@@ -121,14 +140,26 @@ std::string choose_time_step(Simulation<D>& simulation) {
     if (surfaces.exist()) text << ": contact between surfaces bears no more";
     return text.str();
   }
-  simulation.next_time_step = stable_time_step(simulation.domain, cfl);
+  double stable = stable_time_step(simulation.domain, cfl);
   // Surfaces must not pass each other's points.
   if (surfaces.closing > 0.0)
-    simulation.next_time_step = std::min(simulation.next_time_step,
-                                         cfl * most_closing * surfaces.spacing / surfaces.closing);
-  if (run.largest_time_step)
-    simulation.next_time_step = std::min(simulation.next_time_step, *run.largest_time_step);
+    stable = std::min(stable, cfl * most_closing * surfaces.spacing / surfaces.closing);
+  if (run.largest_time_step) stable = std::min(stable, *run.largest_time_step);
+  if (holds_time_step(simulation))
+    hold_time_step(simulation, stable, std::min(held_up_to, most / cfl));
+  else
+    simulation.next_time_step = stable;
   return {};
+}
+
+template <int D>
+bool holds_time_step(const Simulation<D>& simulation) {
+  const Domain<D>& domain = simulation.domain;
+  const auto may_be_held = [](const Body<D>& body) {
+    return body.keeps_nodes() || !body.deforms();
+  };
+  return !simulation.settings.run.time_step && has_kept_nodes(domain) &&
+         std::ranges::all_of(domain.bodies, may_be_held);
 }
 
 template <int D>
@@ -177,6 +208,8 @@ template void probe_speeds<2>(Domain<2>&);
 template void probe_speeds<3>(Domain<3>&);
 template double stable_time_step<2>(const Domain<2>&, double);
 template double stable_time_step<3>(const Domain<3>&, double);
+template bool holds_time_step<2>(const Simulation<2>&);
+template bool holds_time_step<3>(const Simulation<3>&);
 template std::string choose_time_step<2>(Simulation<2>&);
 template std::string choose_time_step<3>(Simulation<3>&);
 template void update_time_step<2>(Simulation<2>&);

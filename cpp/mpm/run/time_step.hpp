@@ -28,6 +28,12 @@ double stable_time_step(const Domain<D>& domain, double cfl);
 template <int D>
 std::string choose_time_step(Simulation<D>& simulation);
 
+/// Is a step held while it is stable? Steps that follow waves, which are faster in what is
+/// squeezed, make energy of vibrations where nodes keep their velocities: 1 to 9 % in some hundred
+/// periods.
+template <int D>
+bool holds_time_step(const Simulation<D>& simulation);
+
 /// The same; what is wrong is a failure of the run.
 template <int D>
 void update_time_step(Simulation<D>& simulation);

@@ -9,7 +9,8 @@ namespace {
 // ten.
 constexpr int many_bodies = 30;
 
-// Of the depth of contact points: from here on surfaces may go through each other.
+// Of their spacing e, twice the depth of contact points: from here on surfaces may go through each
+// other.
 constexpr double deep = 0.7;
 
 /// Note the first node at which so many bodies meet that steps take long, and count such steps.

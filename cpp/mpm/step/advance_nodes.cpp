@@ -48,12 +48,6 @@ void hold_at_walls(const Domain<D>& domain, const Patch<D>& patch, const NodeBlo
   });
 }
 
-/// Sums over the nodes that a patch owns, with v before the step: A + B and G of the ledger and
-/// twice S_g, all but for the time step.
-struct NodeWork {
-  double work = 0.0, gravity_first = 0.0, gravity_second = 0.0;
-};
-
 /// Eq. (8) for the nodes of a block.
 template <int D>
 NodeWork advance_block(const NodeBlock<D>& block, const double* own, const Vec<double, D>& gravity,
@@ -271,8 +265,9 @@ void advance_nodes(Domain<D>& domain) {
                  [&](std::size_t p) { finish(domain, p, hold_and_advance(domain, p)); });
   if (!has_kept_nodes(domain)) return;
   // Patches with nodes that follow others wait for these.
-  std::vector<NodeWork> done(domain.grid.patches.size());
-  const std::vector<std::uint8_t> waits = patches_that_follow(domain);
+  std::vector<NodeWork>& done = domain.work_of_nodes;
+  done.assign(domain.grid.patches.size(), {});
+  const std::vector<std::uint8_t>& waits = patches_that_follow(domain);
   for_each_patch(domain, in_body, [&](std::size_t p) {
     done[p] = hold_and_advance(domain, p);
     if (!waits[p]) finish(domain, p, done[p]);

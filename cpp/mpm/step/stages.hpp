@@ -187,7 +187,8 @@ struct Stages : Data {
                                          true,
                                          true};
   static constexpr Row push_rigid{"push rigid bodies by surfaces", mpm::push_rigid_by_surfaces<D>,
-                                  lists | of_rigid | surfaces, rigid_velocity};
+                                  lists | of_rigid | surfaces | patch_sums,
+                                  rigid_velocity | patch_sums};
   // Before anything takes their velocities: the remap in MUSL, the end of the step in the others.
   static constexpr Row hold_rigid{"project rigid velocities", mpm::project_rigid_velocities<D>,
                                   lists | of_rigid | patch_sums | impulses,
@@ -227,7 +228,7 @@ struct Stages : Data {
   static constexpr Row touch_surfaces{"touch surfaces", mpm::touch_surfaces<D>,
                                       lists | of_particles | of_rigid | deformation | kept_nodes |
                                           kept_spins | surfaces | records | patch_sums,
-                                      surfaces | records | patch_sums};
+                                      kept_spins | surfaces | records | patch_sums};
   static constexpr Row record_contacts{"record contacts", mpm::record_contacts<D>,
                                        node_mass | contacts | records, records};
   template <bool forces_follow>

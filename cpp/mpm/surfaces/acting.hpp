@@ -10,7 +10,7 @@ namespace mpm {
 /// What a point gets by a touch or a bond of another's: a push, and a rub at a place if it rubs.
 template <int D>
 struct GivenToPoint {
-  std::uint64_t order = 0;  // of the part; behind all parts of the bond
+  std::uint64_t order = 0;  // the part's number; of a bond, that of all parts + its own
   std::uint32_t point = 0;
   bool rubs = false;
   Vec<double, D> push, rub, place;
@@ -22,11 +22,11 @@ class Acting {
   explicit Acting(Domain<D>& domain) : domain_(domain), surfaces_(domain.surfaces) {
     for (const ActingOnHost<D>& one : surfaces_.on_hosts) surfaces_.place_on_hosts[one.host] = 0;
     surfaces_.on_hosts.clear();
+    surfaces_.F_on_hosts.clear();
     surfaces_.on_bodies.clear();
     surfaces_.on_bodies_by_part.clear();
   }
-  /// To a point of an own part, or of a body that does not deform. `reach`: to the place where it
-  /// acts, from the point's host.
+  /// To a point of an own part, or of a body that does not deform.
   void push(std::uint64_t order, std::uint32_t point, const Vec<double, D>& force) {
     const ContactPoint<D>& at = surfaces_.points[point];
     if (ActingOnBody* const body = body_of(order, at)) {
@@ -36,7 +36,7 @@ class Acting {
     }
     ActingOnHost<D>& host = on(at.host);
     host.push.add(force, at.surface);
-    const Mat<double, D>& F = deformations_[surfaces_.place_on_hosts[at.host] - 1];
+    const Mat<double, D>& F = surfaces_.F_on_hosts[surfaces_.place_on_hosts[at.host] - 1];
     host.push.add_moment(force, Fibre<D>(F, at.normal, 0.5 * surfaces_.spacing));
   }
   void rub(std::uint64_t order, std::uint32_t point, const Vec<double, D>& force,
@@ -85,7 +85,7 @@ class Acting {
     std::uint32_t& place = surfaces_.place_on_hosts[host];
     if (place == 0) {
       surfaces_.on_hosts.push_back({host, {}, {}});
-      deformations_.push_back(deformation_at(domain_, host).F);
+      surfaces_.F_on_hosts.push_back(deformation_at(domain_, host).F);
       place = static_cast<std::uint32_t>(surfaces_.on_hosts.size());
     }
     return surfaces_.on_hosts[place - 1];
@@ -106,7 +106,6 @@ class Acting {
 
   Domain<D>& domain_;
   Surfaces<D>& surfaces_;
-  std::vector<Mat<double, D>> deformations_;  // F of those that are acted on
 };
 
 }  // namespace mpm

@@ -14,7 +14,7 @@ namespace {
 
 /// One entry for both bodies.
 Approach as_pair(int body, Opposite opposite, double speed) {
-  if (is_face(opposite) || body <= opposite) return {body, opposite, speed};
+  if (is_wall(opposite) || body <= opposite) return {body, opposite, speed};
   return {opposite, body, speed};
 }
 
@@ -49,7 +49,7 @@ template <int D>
 double onset_of(const Domain<D>& domain, const SurfacePart<D>& part, Opposite opposite,
                 double approach) {
   double waves = waves_of(domain, part.body);
-  if (!is_face(opposite)) waves = std::min(waves, waves_of(domain, opposite));
+  if (!is_wall(opposite)) waves = std::min(waves, waves_of(domain, opposite));
   const double fastest = std::max(approach, fastest_approach(domain.surfaces, part.body, opposite));
   return std::min(domain.grid.cell_size * fastest / waves,
                   most_onset(domain.grid.cell_size, domain.surfaces.spacing));

@@ -21,7 +21,7 @@ void move_points_as_one(Domain<D>& domain) {
       before = domain.rigid_before[static_cast<std::size_t>(body.rigid)].centre;
       turned = domain.rigid_turns[static_cast<std::size_t>(body.rigid)];
     }
-    for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
+    for (std::uint32_t c = part.first_point; c < part.first_point + part.point_count; ++c) {
       const Vector3 x = now.centre + turned * (in_space<D>(surfaces.places[c]) - before);
       Vec<double, D> place;
       for (int a = 0; a < D; ++a) place[a] = x[a];

@@ -40,15 +40,15 @@ void add_part(const Domain<D>& domain, std::size_t number, std::vector<BetweenBy
   const SurfacePart<D>& part = surfaces.parts[number];
   const bool faces = restitution_takes(domain.contact_settings);
   for (const SurfaceTouch<D>& touch : part.touches) {
-    if (!(touch.pushed > 0.0) || touch.opposite == part.body) continue;
-    if (is_face(touch.opposite) && !faces) continue;
-    const bool first = is_face(touch.opposite) || part.body < touch.opposite;
+    if (!(touch.pressed_in > 0.0) || touch.opposite == part.body) continue;
+    if (is_wall(touch.opposite) && !faces) continue;
+    const bool first = is_wall(touch.opposite) || part.body < touch.opposite;
     const int a = first ? part.body : touch.opposite, b = first ? touch.opposite : part.body;
     ActingBetween<D>& pair = last_of(all, number, a, b);
     const double sign = first ? 1.0 : -1.0, size = norm(touch.push);
     const Vec<double, D> place = surfaces.places[touch.point] + touch.arm;
     pair.on_first += sign * (touch.push + touch.rub);
-    pair.rubbed += touch.rubbed;
+    pair.rub_work += touch.rub_work;
     pair.push += sign * touch.push;
     pair.middle += size * place;
     pair.size += size;
@@ -97,7 +97,7 @@ void sum_between(Domain<D>& domain) {
     }
     ActingBetween<D>& pair = all.back();
     pair.on_first += one.on_first;
-    pair.rubbed += one.rubbed;
+    pair.rub_work += one.rub_work;
     pair.push += one.push;
     pair.middle += one.middle;
     pair.size += one.size;
@@ -116,7 +116,7 @@ void record_between(Domain<D>& domain) {
   // All ranks know them, and one records them.
   const bool is_first = domain.grid.partition.comm->rank() == 0;
   for (const ActingBetween<D>& pair : domain.surfaces.between) {
-    if (is_face(pair.b) || !is_first) continue;
+    if (is_wall(pair.b) || !is_first) continue;
     PairShare share{pair.a, pair.b, records.known(pair.a, pair.b, step)};
     double impulse[3] = {};
     for (int a = 0; a < D; ++a) {
@@ -124,7 +124,7 @@ void record_between(Domain<D>& domain) {
       share.normal[a] = pair.normal[a];
       share.node[a] = pair.place[a];
     }
-    records.add_to(share, impulse, pair.rubbed);
+    records.add_to(share, impulse, pair.rub_work);
     share.share = 1.0;  // There is one place for each pair.
     share.gap = -pair.overlap;
     records.add(share, step, domain.time_after);

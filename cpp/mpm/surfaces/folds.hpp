@@ -52,7 +52,7 @@ class FoldedBodies {
   template <class F>
   static void for_each_point(std::span<const SurfacePart<D>> parts, F&& f) {
     for (const SurfacePart<D>& part : parts)
-      for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) f(c);
+      for (std::uint32_t c = part.first_point; c < part.first_point + part.point_count; ++c) f(c);
   }
 
   /// Is some point far from where the rigid motion that is nearest to all takes it?

@@ -49,7 +49,8 @@ struct ForceAtHost {
     add_product(moment, t, place.away);
     add_product(second, t, place.second);
   }
-  /// As the force acts a way behind, which turns with a fibre but is not stretched.
+  /// Of t that acts `behind` the place, along the fibre: what it has across the fibre turns that,
+  /// whose length does not matter.
   void add_moment(const Vec<double, D>& t, const Fibre<D>& fibre) {
     const Vec<double, D> aside = t - dot(t, fibre.direction) * fibre.direction;
     add_product(moment, (-fibre.behind / fibre.stretch) * aside, fibre.normal);

@@ -27,15 +27,16 @@ double least_overlap_seen(const Surfaces<D>& surfaces, const SurfacePart<D>& par
 }
 
 /// By how much deeper a point counts of which the surface lies at an overlap, set back by nothing;
-/// none if a gap has opened.
+/// nothing from now on if a gap has opened.
 template <int D>
-double level_at(Levelled<D>& levelled, double overlap, double spacing) {
+double level_unless_open(Levelled<D>& levelled, double overlap, double spacing) {
   levelled.gap = -(overlap + levelled.by);
   if (!(levelled.gap < levelled_gap * spacing)) levelled.by = 0.0;
   return levelled.by;
 }
 
-/// It has gone on by so much in a step, along the normal too.
+/// `way`: what the surfaces have slipped on each other in the step; its part along the normal is
+/// left out.
 template <int D>
 void go_on(Levelled<D>& levelled, const Vec<double, D>& way, const Vec<double, D>& normal) {
   levelled.slid += way - dot(way, normal) * normal;

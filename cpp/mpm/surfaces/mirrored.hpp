@@ -44,22 +44,22 @@ template <int D, class F>
 void for_each_image(const TileGrid<D>& grid, const Vec<double, D>& place, double reach, F&& f) {
   f(PlaceOrImage<D>{0, place});
   if (!grid.walls.exist) return;
-  std::array<PlaceOrImage<D>, 1u << D> found;  // beyond one wall along each axis
+  std::array<PlaceOrImage<D>, D == 3 ? 27 : 9> found;  // beyond one wall at most along each axis
   found[0].place = place;
   std::size_t count = 1;
-  for (int a = 0; a < D; ++a)
+  for (int a = 0; a < D; ++a) {
+    const std::size_t before = count;
     for (const int side : {0, 1}) {
       const Wall wall = grid.walls.face[a][side];
       if (wall != Wall::slip && wall != Wall::fixed) continue;
       const auto mirror = static_cast<std::uint8_t>(1u << (side * D + a));
       const Vec<double, D> image = mirrored_place(grid, mirror, place);
       if (!(0.5 * std::abs(image[a] - place[a]) < reach)) continue;
-      const std::size_t before = count;
-      for (std::size_t k = 0; k < before && count < found.size(); ++k)
+      for (std::size_t k = 0; k < before; ++k)
         found[count++] = {static_cast<std::uint8_t>(found[k].mirrors | mirror),
                           mirrored_place(grid, mirror, found[k].place)};
-      break;  // A box is wider than points are felt.
     }
+  }
   for (std::size_t k = 1; k < count; ++k) f(found[k]);
 }
 

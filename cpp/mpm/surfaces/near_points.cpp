@@ -33,12 +33,13 @@ double largest_of_all(const Domain<D>& domain, const std::vector<double>& number
 /// How far the farthest point has moved since lists were made [m].
 template <int D>
 double moved_since(Domain<D>& domain) {
-  const Surfaces<D>& surfaces = domain.surfaces;
-  std::vector<double> farthest(surfaces.parts.size(), 0.0);
+  Surfaces<D>& surfaces = domain.surfaces;
+  std::vector<double>& farthest = surfaces.farthest;
+  farthest.assign(surfaces.parts.size(), 0.0);
   domain.threads.for_each(surfaces.parts.size(), [&](std::size_t k) {
     const SurfacePart<D>& part = surfaces.parts[k];
-    for (std::uint32_t c = part.first_point; !part.foreign && c < part.first_point + part.points;
-         ++c) {
+    for (std::uint32_t c = part.first_point;
+         !part.foreign && c < part.first_point + part.point_count; ++c) {
       const Vec<double, D> way = surfaces.places[c] - surfaces.places_of_lists[c];
       farthest[k] = std::max(farthest[k], dot(way, way));
     }
@@ -50,12 +51,13 @@ double moved_since(Domain<D>& domain) {
 /// [m/s]. Of each point and face one stands for all.
 template <int D>
 double closing_speed(Domain<D>& domain) {
-  const Surfaces<D>& surfaces = domain.surfaces;
+  Surfaces<D>& surfaces = domain.surfaces;
   if (!(surfaces.age_of_lists > 0.0)) return surfaces.closing;
   const auto way = [&](std::uint32_t c) {
     return surfaces.places[c] - surfaces.places_of_lists[c];
   };
-  std::vector<double> farthest(surfaces.parts.size(), 0.0);
+  std::vector<double>& farthest = surfaces.farthest;
+  farthest.assign(surfaces.parts.size(), 0.0);
   domain.threads.for_each(surfaces.parts.size(), [&](std::size_t k) {
     const SurfacePart<D>& part = surfaces.parts[k];
     for (const NearPoints& near : part.near_of) {
@@ -117,7 +119,7 @@ void find_near(const Domain<D>& domain, const PointBoxes<D>& boxes, const Folded
   BoxesAround<D> around(boxes, reach);
   part.near.clear();
   part.near_of.clear();
-  for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
+  for (std::uint32_t c = part.first_point; c < part.first_point + part.point_count; ++c) {
     if (!(surfaces.points[c].area > 0.0)) continue;
     const Vec<double, D> here = surfaces.places[c];
     NearPoints near{c, -1, 0, 0, 0.0};
@@ -188,7 +190,7 @@ void make_near_lists(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
   std::vector<FaceOfBody> face_of(surfaces.points.size());
   for (const SurfacePart<D>& part : surfaces.parts)
-    for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c)
+    for (std::uint32_t c = part.first_point; c < part.first_point + part.point_count; ++c)
       face_of[c] = {part.body,
                     surfaces.points[c].felt_area > 0.0 ? surfaces.points[c].face : unfelt};
   const double reach = reach_of_lists(surfaces);

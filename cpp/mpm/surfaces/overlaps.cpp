@@ -15,7 +15,7 @@ namespace {
 /// The faces of the box that a point overlaps by more than that, o = e / 2 - z:
 /// f(opposite, o, normal).
 template <int D, class F>
-void for_each_face(const Domain<D>& domain, const Vec<double, D>& place, double least, F&& f) {
+void for_each_wall(const Domain<D>& domain, const Vec<double, D>& place, double least, F&& f) {
   const TileGrid<D>& grid = domain.grid;
   if (!grid.walls.touch()) return;
   for (int axis = D - 1; axis >= 0; --axis)  // by the number of the opposite
@@ -28,7 +28,7 @@ void for_each_face(const Domain<D>& domain, const Vec<double, D>& place, double 
       if (!(overlap > least)) continue;
       Vec<double, D> normal = Vec<double, D>::zero();
       normal[axis] = side == 0 ? 1.0 : -1.0;
-      f(opposite_face(axis, side), overlap, normal);
+      f(opposite_wall(axis, side), overlap, normal);
     }
 }
 
@@ -41,7 +41,7 @@ SurfaceTouch<D> touch_of_face(const Domain<D>& domain, int body, std::uint32_t p
   touch.point = point;
   touch.opposite = face;
   touch.overlap = overlap - set_back;
-  touch.stiffness = stiffness_at_face(surfaces.points[point].area, domain.grid.cell_size,
+  touch.stiffness = stiffness_at_wall(surfaces.points[point].area, domain.grid.cell_size,
                                       1.0 / domain.body_at(body).stiffness);
   touch.slope = normal;
   touch.arm = (overlap - 0.5 * surfaces.spacing) * normal;  // -z n
@@ -139,13 +139,13 @@ void add_touch_of_body(const Domain<D>& domain, SurfacePart<D>& part, const Face
                      }
                    }
                  });
-  // In an order that lists have not.
+  // By mirrors and number: lists differ with the time they were made, and sums must not.
   const auto felt = std::span(part.felt).subspan(touch.first_felt);
   std::ranges::sort(felt, [](const FeltPoint<D>& x, const FeltPoint<D>& y) {
     return x.mirrors != y.mirrors ? x.mirrors < y.mirrors : x.point < y.point;
   });
   for (const FeltPoint<D>& one : felt) slopes += mirrored(one.mirrors, one.slope);
-  touch.felt = static_cast<std::uint32_t>(part.felt.size()) - touch.first_felt;
+  touch.felt_count = static_cast<std::uint32_t>(part.felt.size()) - touch.first_felt;
   touch.slope = slopes;
   touch.arm = (-0.5 * e * in.zeta) * normalised(slopes);
   part.touches.push_back(touch);
@@ -188,10 +188,10 @@ void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part) {
   const double e = surfaces.spacing, least = -0.5 * surfaces.longest_onset,
                least_sum = sum_at_overlap(domain, least_overlap_seen(surfaces, part, least));
   std::size_t next = 0;
-  for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
+  for (std::uint32_t c = part.first_point; c < part.first_point + part.point_count; ++c) {
     // Bodies that do not deform are held by faces as a whole.
     if (!part.as_one && surfaces.points[c].area > 0.0)
-      for_each_face(domain, surfaces.places[c], least,
+      for_each_wall(domain, surfaces.places[c], least,
                     [&](Opposite face, double overlap, const Vec<double, D>& normal) {
                       const double back = set_back_of(surfaces, c, face);
                       if (overlap - back > least)
@@ -202,7 +202,7 @@ void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part) {
       const Opposite body = all.faces.front().body;
       double back = set_back_of(surfaces, c, body);
       if (Levelled<D>* const levelled = find_kept(part.levelled, c, body))
-        back -= level_at(*levelled, e - e * SurfacePoint<D>(all.sum).zeta, e);
+        back -= level_unless_open(*levelled, e - e * SurfacePoint<D>(all.sum).zeta, e);
       add_touch_of_body(domain, part, all, back, least);
     });
   }
@@ -214,7 +214,7 @@ void for_each_near_surface(const Domain<D>& domain, const SurfacePart<D>& part,
                            const std::function<void(const NearPoints&, double)>& f) {
   std::size_t next = 0;
   std::vector<double> sums;
-  for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c)
+  for (std::uint32_t c = part.first_point; c < part.first_point + part.point_count; ++c)
     for_each_body(domain, part, c, 0.0, next, sums, [&](const FacesNear& all) {
       NearPoints of_body = all.faces.front();  // one list follows the other
       of_body.count = all.faces.back().first + all.faces.back().count - of_body.first;
@@ -231,7 +231,7 @@ void set_back_overlaps(Domain<D>& domain) {
   for (SurfacePart<D>& part : surfaces.parts) {
     if (part.foreign) continue;
     std::size_t next = 0;
-    for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
+    for (std::uint32_t c = part.first_point; c < part.first_point + part.point_count; ++c) {
       const auto set_back = [&](Opposite opposite, double overlap) {
         if (!(overlap > 0.0)) return;  // by rounding
         surfaces.set_back.push_back({c, opposite, overlap});
@@ -239,7 +239,7 @@ void set_back_overlaps(Domain<D>& domain) {
         if (overlap > seen) ++told.particles;
       };
       if (!part.as_one && surfaces.points[c].area > 0.0)
-        for_each_face(domain, surfaces.places[c], 0.0,
+        for_each_wall(domain, surfaces.places[c], 0.0,
                       [&](Opposite face, double overlap, const auto&) { set_back(face, overlap); });
       for_each_body(domain, part, c, least_sum, next, part.face_sums, [&](const FacesNear& all) {
         set_back(all.faces.front().body, surfaces.spacing * (1.0 - SurfacePoint<D>(all.sum).zeta));

@@ -17,7 +17,7 @@ struct PieceHead {
   std::int32_t body = 0, rank = 0;
   Index<D> tile{};
   bool as_one = false;
-  std::uint32_t hosts = 0, points = 0;
+  std::uint32_t host_count = 0, point_count = 0;
 };
 template <int D>
 struct PieceOfSurface {
@@ -83,8 +83,8 @@ PieceOfSurface<D> piece_of_patch(const Domain<D>& domain, const Patch<D>& patch,
       }
     });
   }
-  piece.head.hosts = static_cast<std::uint32_t>(piece.hosts.size());
-  piece.head.points = static_cast<std::uint32_t>(piece.points.size());
+  piece.head.host_count = static_cast<std::uint32_t>(piece.hosts.size());
+  piece.head.point_count = static_cast<std::uint32_t>(piece.points.size());
   return piece;
 }
 
@@ -114,7 +114,7 @@ std::vector<PieceOfSurface<D>> all_pieces(const Domain<D>& domain) {
     for (Reader reader(letter); !reader.done();) {
       PieceOfSurface<D>& piece = pieces.emplace_back();
       piece.head = reader.template read<PieceHead<D>>();
-      for (std::uint32_t k = 0; k < piece.head.points; ++k)
+      for (std::uint32_t k = 0; k < piece.head.point_count; ++k)
         piece.points.push_back(reader.template read<typename PieceOfSurface<D>::Point>());
     }
   std::ranges::sort(pieces, [](const PieceOfSurface<D>& x, const PieceOfSurface<D>& y) {
@@ -135,10 +135,10 @@ void add_piece(Surfaces<D>& surfaces, int here, const PieceOfSurface<D>& piece) 
     part.rank = head.rank;
     part.foreign = head.rank != here;
     part.first_host = static_cast<std::uint32_t>(surfaces.hosts.size());
-    part.hosts = head.hosts;
+    part.host_count = head.host_count;
     part.first_point = static_cast<std::uint32_t>(surfaces.points.size());
     const auto number = static_cast<std::uint32_t>(surfaces.parts.size() - 1);
-    for (std::uint32_t k = 0; k < head.hosts; ++k) {
+    for (std::uint32_t k = 0; k < head.host_count; ++k) {
       surfaces.hosts.push_back(piece.hosts.empty() ? Host<D>{} : piece.hosts[k]);
       surfaces.hosts.back().part = number;
     }
@@ -155,7 +155,7 @@ void add_piece(Surfaces<D>& surfaces, int here, const PieceOfSurface<D>& piece) 
     surfaces.given_of.push_back(point.given);
     surfaces.places.push_back(point.place);
   }
-  part.points += head.points;
+  part.point_count += head.point_count;
 }
 
 }  // namespace
@@ -223,7 +223,7 @@ void place_points(Domain<D>& domain) {
     std::uint32_t host = part.first_host;
     Mat<double, D> F = deformation_of(pool, surfaces.hosts[host]);
     Mat<double, D> second = second_derivatives_of(domain, surfaces.hosts[host]);
-    for (std::uint32_t c = part.first_point; c < part.first_point + part.points; ++c) {
+    for (std::uint32_t c = part.first_point; c < part.first_point + part.point_count; ++c) {
       const ContactPoint<D>& point = surfaces.points[c];
       if (point.host != host) {
         host = point.host;

@@ -46,8 +46,9 @@ std::span<const ActingOnHost<D>> acting_on(const Surfaces<D>& surfaces,
                                            const SurfacePart<D>& part) {
   const auto first =
       std::ranges::lower_bound(surfaces.on_hosts, part.first_host, {}, &ActingOnHost<D>::host);
-  const auto last = std::ranges::lower_bound(
-      first, surfaces.on_hosts.end(), part.first_host + part.hosts, {}, &ActingOnHost<D>::host);
+  const auto last =
+      std::ranges::lower_bound(first, surfaces.on_hosts.end(), part.first_host + part.host_count,
+                               {}, &ActingOnHost<D>::host);
   return {first, last};
 }
 

@@ -9,6 +9,7 @@
 #include "mpm/surfaces/mirrored.hpp"
 #include "mpm/surfaces/overlaps.hpp"
 #include "mpm/surfaces/parts.hpp"
+#include "mpm/surfaces/restitution.hpp"
 
 namespace mpm {
 namespace {
@@ -24,8 +25,8 @@ double onset_now(const Domain<D>& domain, const SurfacePart<D>& part, const Surf
 
 template <int D>
 double friction_with(const Domain<D>& domain, int body, Opposite opposite) {
-  if (is_face(opposite))
-    return domain.grid.walls.friction[axis_of_face(opposite)][side_of_face(opposite)];
+  if (is_wall(opposite))
+    return domain.grid.walls.friction[axis_of_wall(opposite)][side_of_wall(opposite)];
   return law_of(domain.contact_settings, domain.body_at(body).group, domain.body_at(opposite).group)
       .friction;
 }
@@ -51,7 +52,7 @@ Vec<double, D> slip_velocity(const Domain<D>& domain, const SurfacePart<D>& part
                              const SurfaceTouch<D>& touch) {
   const Vec<double, D> place = domain.surfaces.places[touch.point] + touch.arm;
   Vec<double, D> u = velocity_of_point(domain, touch.point, touch.reach, place);
-  for (std::uint32_t k = touch.first_felt; k < touch.first_felt + touch.felt; ++k) {
+  for (std::uint32_t k = touch.first_felt; k < touch.first_felt + touch.felt_count; ++k) {
     const FeltPoint<D>& felt = part.felt[k];
     const Vec<double, D> there = mirrored_place(domain.grid, felt.mirrors, place);
     u -= felt.share *
@@ -79,8 +80,8 @@ double damping_of(const Domain<D>& domain, const SurfacePart<D>& part,
                   const SurfaceTouch<D>& touch) {
   const double area = domain.surfaces.points[touch.point].area,
                own = admittance_of(domain, part.body);
-  return is_face(touch.opposite)
-             ? damping_at_face(area, own)
+  return is_wall(touch.opposite)
+             ? damping_at_wall(area, own)
              : damping_of_point(area, own, admittance_of(domain, touch.opposite));
 }
 
@@ -91,17 +92,17 @@ Friction<D> slide(const Domain<D>& domain, const SurfacePart<D>& part, SurfaceTo
                   const Vec<double, D>& before, const Vec<double, D>& u, double coefficient) {
   const double push = norm(touch.push);
   const Vec<double, D> normal = (1.0 / push) * touch.push, way = domain.time_step * u;
-  const auto pushed_with = [&](double force) {
+  const auto friction_with = [&](double force) {
     return rub(before, normal, way, touch.stiffness, coefficient, force);
   };
-  const Friction<D> friction = pushed_with(push);
+  const Friction<D> friction = friction_with(push);
   if (!friction.slides) return friction;
   const double along = dot(normal, u), damping = slides_by(along, norm(u - along * normal)) *
                                                  damping_of(domain, part, touch);
-  touch.pushed = std::max(touch.pushed - damping / touch.stiffness * dot(touch.slope, u),
-                          least_push * touch.pushed);
-  touch.push = touch.stiffness * touch.pushed * touch.slope;
-  return pushed_with(norm(touch.push));
+  touch.pressed_in = std::max(touch.pressed_in - damping / touch.stiffness * dot(touch.slope, u),
+                              least_push * touch.pressed_in);
+  touch.push = touch.stiffness * touch.pressed_in * touch.slope;
+  return friction_with(norm(touch.push));
 }
 
 /// What passes to a point from the image of another is given by the walls.
@@ -111,17 +112,17 @@ void add_across_walls(const Domain<D>& domain, const SurfaceTouch<D>& touch,
   const Surfaces<D>& surfaces = domain.surfaces;
   const Vec<double, D> place = surfaces.places[touch.point] + touch.arm,
                        there = mirrored_place(domain.grid, felt.mirrors, place);
-  const Vec<double, D> push = touch.stiffness * touch.pushed * felt.slope,
+  const Vec<double, D> push = touch.stiffness * touch.pressed_in * felt.slope,
                        rub = felt.share * touch.rub;
   const Vec<double, D> on_point = mirrored(felt.mirrors, push);
   const Vec<double, D> back = mirrored(felt.mirrors, rub);
-  part.at_faces = true;
+  part.at_walls = true;
   for (int a = 0; a < D; ++a) {
     if (!is_mirrored(felt.mirrors, a, D)) continue;
     const int side = felt.mirrors >> a & 1u ? 0 : 1;
-    part.of_faces.add(1u << (2 * a + side), a, on_point[a] - push[a] + rub[a] - back[a]);
+    part.by_walls.add(1u << (2 * a + side), a, on_point[a] - push[a] + rub[a] - back[a]);
   }
-  part.moment_of_faces += cross(in_space<D>(surfaces.places[touch.point]), in_space<D>(on_point)) -
+  part.moment_by_walls += cross(in_space<D>(surfaces.places[touch.point]), in_space<D>(on_point)) -
                           cross(in_space<D>(surfaces.places[felt.point]), in_space<D>(push)) +
                           cross(in_space<D>(place), in_space<D>(rub)) -
                           cross(in_space<D>(there), in_space<D>(back));
@@ -188,14 +189,15 @@ void press_part(Domain<D>& domain, SurfacePart<D>& part) {
   part.kept_next.clear();
   part.begun.clear();
   part.stored_push = part.stored_rub = 0.0;
-  part.of_faces = {};
-  part.moment_of_faces = Vector3::zero();
-  part.at_faces = false;
+  part.by_walls = {};
+  part.moment_by_walls = Vector3::zero();
+  part.at_walls = false;
   for (SurfaceTouch<D>& touch : part.touches) {
     touch.reach = reach_of(domain, touch.point, surfaces.places[touch.point] + touch.arm);
     touch.rub = Vec<double, D>::zero();
-    touch.pushed = 0.0;
-    const double mu = friction_with(domain, part.body, touch.opposite);
+    touch.pressed_in = 0.0;
+    const double mu = friction_with(domain, part.body, touch.opposite) *
+                      left_by_restitution(domain, part.body, touch.opposite);
     const MemoryOfTouch<D>* const known = find_kept(part.kept, touch.point, touch.opposite);
     Levelled<D>* const levelled = find_kept(part.levelled, touch.point, touch.opposite);
     const bool must_know_slip = !known || mu > 0.0 || levelled;
@@ -210,27 +212,27 @@ void press_part(Domain<D>& domain, SurfacePart<D>& part) {
     if (!(touch.overlap > -0.5 * memory.onset)) continue;
     if (!known) part.begun.emplace_back(touch.opposite, approach);
     if (levelled) go_on(*levelled, domain.time_step * u, normalised(touch.slope));
-    touch.pushed = pushed_by(touch.overlap, memory.onset);
-    touch.push = touch.stiffness * touch.pushed * touch.slope;
+    touch.pressed_in = pressed_in_by(touch.overlap, memory.onset);
+    touch.push = touch.stiffness * touch.pressed_in * touch.slope;
     part.stored_push += touch.stiffness * stored_by(touch.overlap, memory.onset);
     if (mu > 0.0 && norm(touch.push) > 0.0) {
       const Friction<D> friction = slide(domain, part, touch, memory.slip, u, mu);
       touch.rub = friction.force;
-      touch.rubbed = friction.taken;
+      touch.rub_work = friction.taken;
       part.stored_rub += friction.stored;
       memory.slip = friction.slip;
     }
     part.kept_next.push_back({touch.point, touch.opposite, memory});
-    if (!is_face(touch.opposite)) {
-      for (std::uint32_t k = touch.first_felt; k < touch.first_felt + touch.felt; ++k)
+    if (!is_wall(touch.opposite)) {
+      for (std::uint32_t k = touch.first_felt; k < touch.first_felt + touch.felt_count; ++k)
         if (part.felt[k].mirrors != 0) add_across_walls(domain, touch, part.felt[k], part);
       continue;
     }
-    part.at_faces = true;
+    part.at_walls = true;
     const Vec<double, D> force = touch.push + touch.rub;
     const unsigned face = 1u << (-1 - touch.opposite);
-    for (int a = 0; a < D; ++a) part.of_faces.add(face, a, force[a]);
-    part.moment_of_faces +=
+    for (int a = 0; a < D; ++a) part.by_walls.add(face, a, force[a]);
+    part.moment_by_walls +=
         cross(in_space<D>(surfaces.places[touch.point] + touch.arm), in_space<D>(force));
   }
   std::swap(part.kept, part.kept_next);

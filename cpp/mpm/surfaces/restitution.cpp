@@ -27,22 +27,22 @@ constexpr double most_in_step = 0.05;
 /// 1 / mass of a body; 0 of those whose motion is prescribed, and of faces.
 template <int D>
 double lightness(const Domain<D>& domain, Opposite number) {
-  if (is_face(number) || domain.body_at(number).is_prescribed()) return 0.0;
+  if (is_wall(number) || domain.body_at(number).is_prescribed()) return 0.0;
   return 1.0 / domain.body_at(number).total_mass;
 }
 
 template <int D>
 PairLaw law_between(const Domain<D>& domain, const ActingBetween<D>& pair) {
   const ContactSettings& settings = domain.contact_settings;
-  if (!is_face(pair.b))
+  if (!is_wall(pair.b))
     return law_of(settings, domain.body_at(pair.a).group, domain.body_at(pair.b).group);
-  const double friction = domain.grid.walls.friction[axis_of_face(pair.b)][side_of_face(pair.b)];
+  const double friction = domain.grid.walls.friction[axis_of_wall(pair.b)][side_of_wall(pair.b)];
   return {friction, false, 0.0, settings.restitution};
 }
 
 template <int D>
 Vector3 velocity_at_place(const Domain<D>& domain, Opposite number, const Vector3& place) {
-  return is_face(number) ? Vector3::zero() : motion_as_one(domain, number).velocity_at(place);
+  return is_wall(number) ? Vector3::zero() : motion_as_one(domain, number).velocity_at(place);
 }
 
 void add_at(std::vector<ActingOnBody>& all, int body, const Vector3& push, const Vector3& rub,
@@ -56,15 +56,15 @@ void add_at(std::vector<ActingOnBody>& all, int body, const Vector3& push, const
 
 /// What a face gives a body as a whole is told with what it gives its points.
 template <int D>
-void add_of_face(Surfaces<D>& surfaces, const ActingBetween<D>& pair, const Vector3& force,
+void add_by_wall(Surfaces<D>& surfaces, const ActingBetween<D>& pair, const Vector3& force,
                  const Vector3& place) {
   SurfacePart<D>& part =
       *std::ranges::lower_bound(surfaces.parts, pair.a, {}, &SurfacePart<D>::body);
   if (part.foreign) return;
   const unsigned face = 1u << (-1 - pair.b);
-  for (int a = 0; a < D; ++a) part.of_faces.add(face, a, force[a]);
-  part.moment_of_faces += cross(place, force);
-  part.at_faces = true;
+  for (int a = 0; a < D; ++a) part.by_walls.add(face, a, force[a]);
+  part.moment_by_walls += cross(place, force);
+  part.at_walls = true;
 }
 
 }  // namespace
@@ -91,15 +91,19 @@ void add_restitution(Domain<D>& domain) {
     const double swing = norm(along), log_e = std::log(std::max(e, 1e-3));
     const double beta = -log_e / std::sqrt(std::numbers::pi * std::numbers::pi + log_e * log_e);
     const double rubbed = norm(pair.on_first - pair.push);
-    const double most = std::max(law.friction * push - rubbed, 0.0);
+    const double most = std::max(law.friction * (push - taken) - rubbed, 0.0);
     const double drag =
         std::min(2.0 * beta * std::sqrt(pair.stiffness * mass), most_in_step * mass / dt) * swing;
-    const Vector3 rub = swing > 0.0 ? (-std::min(drag, most) / swing) * along : Vector3::zero();
+    Vector3 rub = swing > 0.0 ? (-std::min(drag, most) / swing) * along : Vector3::zero();
+    // Friction of points is bounded by what was left in the step before: what it is more by now.
+    const double allowed = law.friction * pair.size * (1.0 - taken / push);
+    if (rubbed > allowed) rub -= (1.0 - allowed / rubbed) * in_space<D>(pair.on_first - pair.push);
     const Vector3 back = -taken * normal;
+    pair.left = 1.0 - taken / push;
     for (int a = 0; a < D; ++a) pair.on_first[a] += back[a] + rub[a];
-    if (is_face(pair.b)) add_of_face(surfaces, pair, back + rub, place);
+    if (is_wall(pair.b)) add_by_wall(surfaces, pair, back + rub, place);
     add_at(surfaces.on_bodies, pair.a, back, rub, place);
-    if (!is_face(pair.b)) add_at(surfaces.on_bodies, pair.b, -1.0 * back, -1.0 * rub, place);
+    if (!is_wall(pair.b)) add_at(surfaces.on_bodies, pair.b, -1.0 * back, -1.0 * rub, place);
   }
 }
 

@@ -1,4 +1,7 @@
 #pragma once
+#include <algorithm>
+#include <utility>
+
 #include "mpm/domain.hpp"
 
 namespace mpm {
@@ -14,5 +17,18 @@ inline bool restitution_takes(const ContactSettings& settings) {
 /// sum_between().
 template <int D>
 void add_restitution(Domain<D>& domain);
+
+/// Of the normal force that springs of the two have, what the bodies feel by add_restitution() of
+/// the step before: Coulomb's law bounds friction by that.
+template <int D>
+double left_by_restitution(const Domain<D>& domain, int body, Opposite opposite) {
+  if (!restitution_takes(domain.contact_settings)) return 1.0;
+  const std::vector<ActingBetween<D>>& all = domain.surfaces.between;
+  const bool is_first = is_wall(opposite) || body <= opposite;
+  const auto wanted = is_first ? std::pair(body, opposite) : std::pair(opposite, body);
+  const auto at = std::ranges::lower_bound(
+      all, wanted, {}, [](const ActingBetween<D>& pair) { return std::pair(pair.a, pair.b); });
+  return at != all.end() && at->a == wanted.first && at->b == wanted.second ? at->left : 1.0;
+}
 
 }  // namespace mpm

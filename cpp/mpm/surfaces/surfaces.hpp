@@ -50,10 +50,10 @@ struct ContactPoint {
 
 /// Whom a point touches: a body by its number, a face of the box by -1 - (2 axis + side).
 using Opposite = std::int32_t;
-constexpr Opposite opposite_face(int axis, int side) { return -1 - (2 * axis + side); }
-constexpr bool is_face(Opposite opposite) { return opposite < 0; }
-constexpr int axis_of_face(Opposite opposite) { return (-1 - opposite) / 2; }
-constexpr int side_of_face(Opposite opposite) { return (-1 - opposite) % 2; }
+constexpr Opposite opposite_wall(int axis, int side) { return -1 - (2 * axis + side); }
+constexpr bool is_wall(Opposite opposite) { return opposite < 0; }
+constexpr int axis_of_wall(Opposite opposite) { return (-1 - opposite) / 2; }
+constexpr int side_of_wall(Opposite opposite) { return (-1 - opposite) % 2; }
 
 /// What a contact point keeps of its contact with an opposite.
 template <class Value>
@@ -106,17 +106,17 @@ template <int D>
 struct SurfaceTouch {
   std::uint32_t point = 0;
   Opposite opposite = 0;
-  double overlap = 0.0;    // [m]
-  double stiffness = 0.0;  // [N/m]
-  double pushed = 0.0;     // of the overlap, what pushes [m]
-  Vec<double, D> slope;    // of the overlap with the point's place, backwards: where it is pushed
-  Vec<double, D> push;     // on the point, by the spring [N]
-  Vec<double, D> rub;      // at the place of contact, by friction [N]
-  Vec<double, D> arm;      // from the point to that place [m]
-  PlaceAtHost<D> reach;    // that place in the body at the start
-  double rubbed = 0.0;     // taken by friction in the step [J]
+  double overlap = 0.0;     // [m]
+  double stiffness = 0.0;   // [N/m]
+  double pressed_in = 0.0;  // of the overlap, what the spring is pressed in by [m]
+  Vec<double, D> slope;     // of the overlap with the point's place, backwards: where it is pushed
+  Vec<double, D> push;      // on the point, by the spring [N]
+  Vec<double, D> rub;       // at the place of contact, by friction [N]
+  Vec<double, D> arm;       // from the point to that place [m]
+  PlaceAtHost<D> reach;     // that place in the body at the start
+  double rub_work = 0.0;    // taken by friction in the step [J]
   // The points of the other body that it feels, of SurfacePart::felt.
-  std::uint32_t first_felt = 0, felt = 0;
+  std::uint32_t first_felt = 0, felt_count = 0;
 };
 
 /// A point of another body that a point feels.
@@ -150,10 +150,12 @@ template <int D>
 struct ActingBetween {
   int a = 0, b = 0;                                  // a < b
   Vec<double, D> on_first = Vec<double, D>::zero();  // [N]
-  double rubbed = 0.0;                               // taken by friction in the step before [J]
+  double rub_work = 0.0;                             // taken by friction in the step before [J]
   // Of the springs the normal force on the first, the sum of the sizes, and of places times these.
   Vec<double, D> push = Vec<double, D>::zero(), middle = Vec<double, D>::zero();  // [N]; [N m]
   double size = 0.0, stiffness = 0.0;                                             // [N]; [N/m]
+  double left =
+      1.0;  // of the normal force, what the bodies feel: less as they part (restitution.hpp)
   // Of the deepest overlap: it, the unit vector from a to b, and where.
   double overlap = -std::numeric_limits<double>::infinity();
   Vec<double, D> normal = Vec<double, D>::zero(), place = Vec<double, D>::zero();
@@ -188,11 +190,13 @@ template <int D>
 struct SurfacePart {
   int body = 0;
   Index<D> tile{};
-  bool as_one = false;      // of a body that does not deform
-  bool foreign = false;     // another rank's
-  int rank = 0;             // whose it is
-  std::uint32_t patch = 0;  // of that body and tile, as long as patches stay what they are
-  std::uint32_t first_host = 0, hosts = 0, first_point = 0, points = 0;
+  bool as_one = false;   // of a body that does not deform
+  bool foreign = false;  // another rank's
+  int rank = 0;          // whose it is
+  // Of that body and tile, as long as patches stay what they are; none of a body that does not
+  // deform.
+  std::uint32_t patch = 0;
+  std::uint32_t first_host = 0, host_count = 0, first_point = 0, point_count = 0;
   // Of the farthest way of its points in the last step, of own ones, where it is known [m^2].
   double square_of_step = std::numeric_limits<double>::infinity();
 
@@ -207,10 +211,10 @@ struct SurfacePart {
   std::vector<std::uint32_t> awake;
   std::vector<FeltPoint<D>> felt;  // by touches
   std::vector<double> face_sums;   // scratch: of the faces of a body that a point feels
-  // By the faces of the box in the coming step, with the moment about the origin [N, N m].
-  FaceImpulses<D> of_faces;
-  Vector3 moment_of_faces = Vector3::zero();
-  bool at_faces = false;  // is there any?
+  // By the walls of the box in the coming step, with the moment about the origin [N, N m].
+  FaceImpulses<D> by_walls;
+  Vector3 moment_by_walls = Vector3::zero();
+  bool at_walls = false;  // is there any?
 };
 
 /// The point that is deepest in the surface of another body after a step.
@@ -219,6 +223,12 @@ struct DeepestPoint {
   int body = -1;
   double overlap = 0.0;  // [m]
   Vec<double, D> place = Vec<double, D>::zero();
+};
+/// That of a rank, with the number of its part.
+template <int D>
+struct DeepestOfRank {
+  std::uint64_t part = 0;
+  DeepestPoint<D> point;
 };
 
 template <int D>
@@ -247,13 +257,16 @@ struct Surfaces {
   std::vector<std::uint32_t> place_of_motion;  // of each host, 1 + where that is, or 0
   std::vector<Approach> approaches;            // so far, by pair
   double longest_onset = 0.0;  // over which springs begin in this step, at most, (S4) [m]
-  std::vector<ActingBetween<D>> between;        // bodies, by pair
-  std::vector<BetweenByPart<D>> between_parts;  // scratch
-  std::vector<OnBodyByPart> on_bodies_by_part;  // scratch
-  std::vector<ActingOnBody> on_bodies;          // that do not deform, by body
-  std::vector<ActingOnHost<D>> on_hosts;        // by host; in the coming step
-  std::vector<std::uint32_t> place_on_hosts;    // scratch: of each host, 1 + where it is, or 0
-  double stored_push = 0.0, stored_rub = 0.0;   // in the springs after the last step [J]
+  std::vector<ActingBetween<D>> between;         // bodies, by pair
+  std::vector<BetweenByPart<D>> between_parts;   // scratch
+  std::vector<OnBodyByPart> on_bodies_by_part;   // scratch
+  std::vector<ActingOnBody> on_bodies;           // that do not deform, by body
+  std::vector<ActingOnHost<D>> on_hosts;         // by host; in the coming step
+  std::vector<std::uint32_t> place_on_hosts;     // scratch: of each host, 1 + where it is, or 0
+  std::vector<Mat<double, D>> F_on_hosts;        // scratch: of those
+  std::vector<DeepestOfRank<D>> deepest_of_all;  // scratch: of the ranks
+  std::vector<double> farthest;                  // scratch: of each part, the square of a way [m^2]
+  double stored_push = 0.0, stored_rub = 0.0;    // in the springs after the last step [J]
 
   DeepestPoint<D> deepest;
   std::size_t touching = 0, touching_max = 0;  // points that are pushed, now and since the start

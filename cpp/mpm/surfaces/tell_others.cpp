@@ -43,7 +43,7 @@ void tell_all_places(Domain<D>& domain) {
   Surfaces<D>& surfaces = domain.surfaces;
   if (comm.alone()) return;
   const auto places_of = [&](const SurfacePart<D>& part) {
-    return std::span(surfaces.places).subspan(part.first_point, part.points);
+    return std::span(surfaces.places).subspan(part.first_point, part.point_count);
   };
   Mail mail;
   mail.out.resize(static_cast<std::size_t>(comm.size()) - 1);
@@ -56,7 +56,7 @@ void tell_all_places(Domain<D>& domain) {
       if (!part.foreign)
         write_all<Vec<double, D>>(mail.out[k], places_of(part));
       else if (part.rank == rank)
-        extend(mail.in[k], part.points * sizeof(Vec<double, D>));
+        extend(mail.in[k], part.point_count * sizeof(Vec<double, D>));
     }
   }
   comm.start(mail);

@@ -27,8 +27,8 @@ void for_each_felt(const Domain<D>& domain, std::size_t number, const SurfaceTou
   const TileGrid<D>& grid = domain.grid;
   const SurfacePart<D>& part = surfaces.parts[number];
   const Vec<double, D> place = surfaces.places[touch.point] + touch.arm;
-  const double push = touch.stiffness * touch.pushed;
-  for (std::uint32_t k = touch.first_felt; k < touch.first_felt + touch.felt; ++k) {
+  const double push = touch.stiffness * touch.pressed_in;
+  for (std::uint32_t k = touch.first_felt; k < touch.first_felt + touch.felt_count; ++k) {
     const FeltPoint<D>& felt = part.felt[k];
     f(GivenToPoint<D>{number, felt.point, rubs(touch), -push * felt.slope,
                       mirrored(felt.mirrors, -felt.share * touch.rub),
@@ -67,7 +67,7 @@ std::vector<GivenToPoint<D>> given_by_others(Domain<D>& domain, const Acting<D>&
   for (std::size_t k = 0; k < surfaces.parts.size(); ++k) {
     if (surfaces.parts[k].foreign) continue;
     for (const SurfaceTouch<D>& touch : surfaces.parts[k].touches)
-      if (touch.pushed > 0.0) for_each_felt(domain, k, touch, send);
+      if (touch.pressed_in > 0.0) for_each_felt(domain, k, touch, send);
   }
   for_each_own_bond(
       surfaces, [&](const Bond<D>& bond, std::uint64_t order) { send(other_end(bond, order)); });
@@ -85,7 +85,7 @@ std::size_t give_touches(Acting<D>& acting, const Domain<D>& domain, std::size_t
   const Surfaces<D>& surfaces = domain.surfaces;
   std::size_t touching = 0;
   for (const SurfaceTouch<D>& touch : surfaces.parts[number].touches) {
-    if (!(touch.pushed > 0.0)) continue;
+    if (!(touch.pressed_in > 0.0)) continue;
     ++touching;
     acting.push(number, touch.point, touch.push);
     if (rubs(touch))
@@ -97,13 +97,6 @@ std::size_t give_touches(Acting<D>& acting, const Domain<D>& domain, std::size_t
   }
   return touching;
 }
-
-/// What is deepest, with its place in the order of all.
-template <int D>
-struct DeepestOfRank {
-  std::uint64_t part = 0;
-  DeepestPoint<D> point;
-};
 
 /// What is stored and how many touch, of all ranks, and what is deepest.
 template <int D>
@@ -118,7 +111,8 @@ void sum_up(Domain<D>& domain, std::size_t touching) {
     stored[0].add(part.stored_push);
     stored[1].add(part.stored_rub);
     for (const SurfaceTouch<D>& touch : part.touches)
-      if (touch.pushed > 0.0 && !is_face(touch.opposite) && touch.overlap > deepest.point.overlap)
+      if (touch.pressed_in > 0.0 && !is_wall(touch.opposite) &&
+          touch.overlap > deepest.point.overlap)
         deepest = {k, {part.body, touch.overlap, surfaces.places[touch.point] + touch.arm}};
   }
   for (const Bond<D>& bond : surfaces.bonds)
@@ -129,7 +123,8 @@ void sum_up(Domain<D>& domain, std::size_t touching) {
   surfaces.stored_rub = stored[1].value();
   surfaces.deepest = {};
   std::uint64_t at = 0;
-  std::vector all{deepest};
+  std::vector<DeepestOfRank<D>>& all = surfaces.deepest_of_all;
+  all.assign(1, deepest);
   entries_of_all(comm, all);
   for (const DeepestOfRank<D>& one : all) {
     const double overlap = one.point.overlap;
@@ -168,8 +163,8 @@ void give_to_hosts(Domain<D>& domain) {
 }
 
 /// The other half of the work of contact in the step, by the forces where the bodies are by now:
-/// so that linear springs take what they store. They go on to drive the nodes to the end of the
-/// step.
+/// so that linear springs take what they store. Nodes have the velocities of the middle of the
+/// step; what these forces do until its end is added to kept_ahead.
 template <int D>
 void add_work_at_end(Domain<D>& domain, const SurfacePart<D>& part) {
   if (part.as_one) return;
@@ -186,12 +181,12 @@ void add_work_at_end(Domain<D>& domain, const SurfacePart<D>& part) {
   }
 }
 
-/// What the touches of a part pass to faces of the box.
+/// What the touches of a part pass to walls of the box, among the sums of a patch.
 template <int D>
-void add_at_faces(Domain<D>& domain, const SurfacePart<D>& part) {
+void add_by_walls(Domain<D>& domain, const SurfacePart<D>& part, std::size_t patch) {
   const double acts = time_of_forces(domain, true);
-  domain.sums[part.patch].angular.walls += acts * part.moment_of_faces;
-  domain.face_parts[part.patch].add(part.of_faces, acts);
+  domain.sums[patch].angular.walls += acts * part.moment_by_walls;
+  domain.face_parts[patch].add(part.by_walls, acts);
 }
 
 }  // namespace
@@ -230,11 +225,15 @@ void load_by_surfaces(Domain<D>& domain) {
       all.add(on.rub);
       give_to_nodes_of(domain, surfaces.hosts[on.host], all);
     }
-    if (part.at_faces && !part.as_one) add_at_faces(domain, part);
+    if (part.at_walls && !part.as_one) add_by_walls(domain, part, part.patch);
   });
-  // These have no patch of their own, but write to that of another.
-  for (const SurfacePart<D>& part : surfaces.parts)
-    if (part.at_faces && part.as_one && !part.foreign) add_at_faces(domain, part);
+  // These have no patch of their own and count with the first, which this rank may not have.
+  for (const SurfacePart<D>& part : surfaces.parts) {
+    if (!part.at_walls || !part.as_one || part.foreign) continue;
+    if (domain.sums.empty()) domain.sums.resize(1);
+    if (domain.face_parts.empty()) domain.face_parts.resize(1);
+    add_by_walls(domain, part, 0);
+  }
 }
 
 template void touch_surfaces<2>(Domain<2>&);

@@ -29,6 +29,7 @@ from .checks import check_case
 from .choices import with_choices, with_picture
 from .content import PRESETS, content_of, hash_of, with_preset
 from .detonation import Detonation
+from .frame import all_in_bodies
 from .grid import CONTACT, Grid
 from .loads import Load
 from .material import Material as Material  # also for those who import it from here
@@ -90,7 +91,8 @@ class Case(CaseModel):
             ValueError: a violation, of which the sentence is made where the case is read or run.
         """
         flows = any(self.flows(part) for part in self.parts())
-        chosen = with_choices(self.grid.basis, self.run, self.contact, flows)
+        in_space = not all_in_bodies(self)
+        chosen = with_choices(self.grid.basis, self.run, self.contact, flows, in_space)
         self.__dict__ |= chosen | with_picture(self)
         check_case(self)
 

@@ -33,7 +33,9 @@ SHEARED, PRESSED = "von_mises", "pressure"
 _Table = TypeVar("_Table", bound=CaseModel)
 
 
-def with_choices(basis: str, run: Run, contact: Contact, flows: bool) -> dict[str, Run | Contact]:
+def with_choices(
+    basis: str, run: Run, contact: Contact, flows: bool, in_space: bool = True
+) -> dict[str, Run | Contact]:
     """Return `run` and `contact` of a case with what they leave out, by their names.
 
     Args:
@@ -42,8 +44,9 @@ def with_choices(basis: str, run: Run, contact: Contact, flows: bool) -> dict[st
             `transfer`, `scheme` and `cfl`.
         contact: likewise, with its `response`.
         flows: whether a body has no shape of its own: a gas, a liquid, an explosive.
+        in_space: whether any body has nodes in space; else its transfer chooses nothing.
     """
-    run = _run(run, basis)
+    run = _run(run, basis, in_space)
     return {"run": run, "contact": _contact(contact, run, flows)}
 
 
@@ -64,13 +67,17 @@ def has_fluids_alone(case: Case) -> bool:
     return bool(strengths) and all(catalogue()[name].flows for name in strengths)
 
 
-def _run(run: Run, basis: str) -> Run:
+def usual_transfer(basis: str) -> str:
+    """Return the transfer of a case with a basis that does not say one."""
+    return TRANSFER if _core.bases[basis]["second_moment"] > 0.0 else OTHER_TRANSFER
+
+
+def _run(run: Run, basis: str, in_space: bool) -> Run:
     given, chosen = run.model_fields_set, {}
     if "transfer" not in given:
-        affine = _core.bases[basis]["second_moment"] > 0.0
-        chosen["transfer"] = Transfer.model_validate(TRANSFER if affine else OTHER_TRANSFER)
+        chosen["transfer"] = Transfer.model_validate(usual_transfer(basis))
     word = chosen.get("transfer", run.transfer).word
-    more = AFFINE if _core.transfers[word]["affine"] else OTHERS
+    more = AFFINE if _core.transfers[word]["affine"] or not in_space else OTHERS
     return _with(run, chosen | {key: value for key, value in more.items() if key not in given})
 
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from pydantic_core import PydanticCustomError
 
@@ -16,6 +16,7 @@ from .pairs import presses
 
 if TYPE_CHECKING:
     from .case import Case
+    from .material import Material
 
 
 HOLDING = {"slip", "fixed"}
@@ -25,6 +26,18 @@ HOLDING = {"slip", "fixed"}
 def in_body(case: Case) -> list[str]:
     """Return the bodies and entries of grains whose nodes lie in them."""
     return [name for name, part in case.parts().items() if part.frame == MATERIAL]
+
+
+def all_in_bodies(case: Case) -> bool:
+    """Return whether all bodies that deform have nodes of their own, and there are any."""
+
+    def deforms(part: Any) -> bool:
+        material = case.material.get(part.material)
+        rigid = material is not None and material.strength.model == "rigid"
+        return getattr(part, "motion", None) is None and not rigid
+
+    frames = [part.frame for part in case.parts().values() if deforms(part)]
+    return bool(frames) and all(frame == MATERIAL for frame in frames)
 
 
 def check_frames(case: Case) -> Iterator[PydanticCustomError]:
@@ -74,15 +87,26 @@ def _of_body(case: Case, name: str) -> Iterator[tuple[str, str]]:
         yield "does not go with a body that does not deform", "remove frame"
     material = case.material[part.material]
     if _core.breaks_up(**material.for_core()):
-        rule = (
-            f"does not go with material.{part.material}, which flows or breaks: neighbours stay "
-            "neighbours there"
-        )
-        yield rule, updated
+        yield _of_what_breaks(material, f"material.{part.material}")
     moves = any(part.velocity) or any(part.angular_velocity)
     if case.run.settle is not None and moves:
         rule = "does not go with run.settle yet where the body has a velocity at the start"
         yield rule, updated
+
+
+def _of_what_breaks(material: Material, key: str) -> tuple[str, str]:
+    """Return rule and remedy of a material that flows or breaks, by the model that makes it so."""
+    updated, what, without = f'give frame = "{UPDATED}"', "", ""
+    eos = material.eos
+    if material.failure:
+        what, without = f"its failure model {material.failure[0].model}", f"leave {key}.failure out"
+    elif eos is not None and eos.parameters.get("spall_strength"):
+        what = "the spall_strength of its equation of state"
+        without = f"give {key}.eos.{eos.model}.spall_strength = 0 if it does not spall"
+    else:
+        what = f"its strength {material.strength.model}"
+    rule = f"does not go with {key}, which flows or breaks by {what}: neighbours stay neighbours"
+    return f"{rule} there", f"{updated}, or {without}" if without else updated
 
 
 def _at_nodes(case: Case) -> Iterator[PydanticCustomError]:
@@ -103,7 +127,8 @@ def _at_nodes(case: Case) -> Iterator[PydanticCustomError]:
 
 def _of_case(case: Case) -> Iterator[tuple[str, str]]:
     """Yield what the rest of the case has, likewise."""
-    updated = f'give frame = "{UPDATED}"'
+    frame = f'frame = "{UPDATED}"'
+    updated = f"give {frame}"
     if case.grid.basis == "linear":
         yield "needs gradients without jumps", 'give grid.basis = "quadratic_bspline"'
     others = [one for one in case.parts() if not case.is_rigid(one) and one not in in_body(case)]
@@ -112,16 +137,15 @@ def _of_case(case: Case) -> Iterator[tuple[str, str]]:
         yield "does not go with contact.bonded, of bodies that share nodes", remedy
     if case.contact_enabled and others:
         rule = f"does not go with contact with {others[0]}, which has another frame, yet"
-        yield rule, f'give all frame = "{MATERIAL}", contact.enabled = false, or {updated[5:]}'
+        yield rule, f'give all frame = "{MATERIAL}", contact.enabled = false, or {frame}'
     if case.contact_enabled and presses(case):
         rule = 'does not go with contact.interference = "pressed" yet'
         yield rule, f"leave it out, or {updated}"
     if "absorbing" in case.grid.walls:
         yield "does not go with walls of grid.box that absorb yet", f"leave them out, or {updated}"
-    if HOLDING & set(case.grid.walls):
-        rule = "does not go with walls of grid.box that are slip or fixed"
-        if _restitution(case):
-            yield f"{rule} and a restitution, yet", f"leave one of them out, or {updated}"
+    if HOLDING & set(case.grid.walls) and _restitution(case):
+        rule = "does not go with walls of grid.box that are slip or fixed and a restitution, yet"
+        yield rule, f"leave one of them out, or {updated}"
     if case.grid.outflow_box is not None:
         yield "does not go with grid.outflow_box", f"leave it out, or {updated}"
     if case.grid.coarsening is not None:

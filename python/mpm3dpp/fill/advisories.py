@@ -22,7 +22,6 @@ from mpm3dpp.ranks.world import World
 from .bond_notes import bond_notes
 from .detonation_notes import detonation_notes
 from .explosive_notes import explosive_notes
-from .frame_notes import frame_notes
 from .friction_notes import friction_notes
 from .gas_notes import gas_notes
 from .initial import at_rest
@@ -36,6 +35,7 @@ from .size_notes import size_notes
 from .stretch_notes import stretch_notes
 from .surface_notes import surface_notes
 from .surface_points import MOST_CFL, surfaces_touch
+from .transfer_notes import transfer_notes
 from .unit_notes import unit_notes
 from .wall_notes import off_walls, wall_notes
 
@@ -63,7 +63,7 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *wall_notes(case),
         *off_walls(case, bodies),
         *surface_notes(case, bodies),
-        *frame_notes(case),
+        *transfer_notes(case),
         *friction_notes(case, bodies),
         *gas_notes(case),
         *response_notes(case),

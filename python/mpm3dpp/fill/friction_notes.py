@@ -8,23 +8,23 @@ import math
 from mpm3dpp.base.errors import key_text
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.frame import in_body
-from mpm3dpp.case.grid import CONTACT
 from mpm3dpp.case.moduli import moduli_of
 from mpm3dpp.case.pairs import listed_pairs
 
-from .parts import Filled, FilledPart
+from .parts import Filled
 
 _LOSSLESS = ("elastic", "neo_hookean")
-_RATIO = 0.01  # Of critical damping, at the slowest shear waves: a quarter of one to a thickness.
+_RATIO = 0.01  # Of critical damping, at shear waves of which a quarter is as long as the body.
 
 
 def friction_notes(case: Case, bodies: Filled) -> list[str]:
     """Return a sentence for each material of which bodies lie on friction and lose nothing else.
 
     Constant friction drives waves along the surfaces of elastic bodies (Adams 1995), and what
-    vibrates walks where it should stick. In the updated frame the nodes take the waves.
+    vibrates walks where it should stick. Settling, a restitution or a damping hold it; that of
+    short waves alone does not. In the updated frame the nodes take the waves.
     """
-    if not any(case.run.gravity) or case.run.settle or case.run.short_wave_damping:
+    if not any(case.run.gravity) or case.run.settle:
         return []
     trembling: dict[str, list[str]] = {}
     for name in _on_friction(case):
@@ -38,8 +38,6 @@ def friction_notes(case: Case, bodies: Filled) -> list[str]:
 
 def _on_friction(case: Case) -> list[str]:
     """Return the entries on nodes of their own that others, or walls, rub without restitution."""
-    if not case.contact_enabled:
-        return []
     parts, firsts = case.parts(), case.first_bodies()
     listed, usual = listed_pairs(case), case.contact
 
@@ -52,13 +50,13 @@ def _on_friction(case: Case) -> list[str]:
         bonded = pair is not None and pair.bonded
         return friction > 0.0 and restitution == 1.0 and not bonded
 
-    walls = CONTACT in case.grid.walls and usual.friction > 0.0 and usual.restitution == 1.0
-    return [
-        name
-        for name in in_body(case)
-        if walls
-        or any(rubs(name, other) for other in parts if other != name or name in case.grains)
-    ]
+    walls = any(case.grid.wall_friction(usual.friction)) and usual.restitution == 1.0
+
+    def lies_on(name: str, other: str) -> bool:
+        return (other != name or name in case.grains) and rubs(name, other)
+
+    others = parts if case.contact_enabled else {}
+    return [name for name in in_body(case) if walls or any(lies_on(name, one) for one in others)]
 
 
 def _sentence(case: Case, bodies: Filled, names: list[str]) -> str:
@@ -67,8 +65,9 @@ def _sentence(case: Case, bodies: Filled, names: list[str]) -> str:
     moduli = moduli_of(material)
     assert moduli is not None
     waves = math.sqrt(moduli.G / material.density)
-    thickness = min(_thickness(bodies.parts[name]) for name in names)
-    beta = 2.0 * _RATIO / (0.5 * math.pi * waves / thickness)
+    masses = min(float(bodies.parts[name].masses.min()) for name in names)
+    size = (masses / material.density) ** (1.0 / case.grid.dimension)
+    beta = 2.0 * _RATIO / (0.5 * math.pi * waves / size)
     others = f" and {len(names) - 1} more" if len(names) > 1 else ""
     return (
         f"{key_text(case.part_path(names[0]))}{others} of {key}: what is elastic and loses nothing "
@@ -76,8 +75,3 @@ def _sentence(case: Case, bodies: Filled, names: list[str]) -> str:
         f'{key}.damping.stiffness, for example "{1e6 * beta:.2g} us" (a hundredth of critical at '
         "its slowest shear waves), run.settle or contact.restitution"
     )
-
-
-def _thickness(part: FilledPart) -> float:
-    """Return the least extent of a body [m]."""
-    return float((part.survey.upper - part.survey.lower).min()) + part.spacing

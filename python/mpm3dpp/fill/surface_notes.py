@@ -23,8 +23,6 @@ _FASTEST = 0.2
 
 def surface_notes(case: Case, bodies: Filled) -> list[str]:
     """Return a sentence for each entry on nodes of its own that meets something too fast."""
-    if not case.contact.enabled:
-        return []
     found, told = [], set()
     for name in in_body(case):
         waves = case.material[case.parts()[name].material].sound_speed()
@@ -79,7 +77,7 @@ def _meetings(case: Case, bodies: Filled, name: str) -> Iterator[tuple[str, floa
     own = _velocity(case, name)
     if own is None:
         return
-    for other in bodies.parts:
+    for other in bodies.parts if case.contact.enabled else ():
         theirs = _velocity(case, other)
         if other == name or theirs is None:
             continue

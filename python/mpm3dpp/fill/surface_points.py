@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mpm3dpp import _core
 from mpm3dpp.base.frames import MATERIAL
 from mpm3dpp.case.frame import HOLDING
 from mpm3dpp.case.grid import CONTACT
@@ -31,9 +32,9 @@ Array = NDArray[np.float64]
 
 REACHES = 2.0
 """Reaches e of springs along the edge of a particle; contact points lie e / 2 behind surfaces."""
-MOST_CFL = 0.6
-"""Of the time in which a wave passes a cell, what springs between surfaces bear as a step; as
-cpp/mpm/run/time_step.cpp has it (decision 0071)."""
+MOST_CFL: float = _core.most_cfl_of_surfaces
+"""Of the time in which a wave passes a cell, what springs between surfaces bear as a step
+(decision 0071)."""
 ALONG = {2: 2.0, 3: 1.0}
 """Contact points along e, in 2D and 3D: rows have bumps that stop a roll."""
 

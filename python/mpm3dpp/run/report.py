@@ -148,9 +148,15 @@ def _restitution_takes(case: dict[str, Any]) -> bool:
 
 
 def _nodes_in_bodies(case: dict[str, Any]) -> bool:
-    """Return whether no body has its nodes in space, so that there is no transfer."""
+    """Return whether no body that deforms has its nodes in space, so that there is no transfer."""
     parts = [*case.get("body", {}).values(), *case.get("grains", {}).values()]
-    return all(part.get("frame") == MATERIAL or part.get("motion") is not None for part in parts)
+    strengths = {name: one.get("strength", {}) for name, one in case.get("material", {}).items()}
+    return all(
+        part.get("frame") == MATERIAL
+        or part.get("motion") is not None
+        or "rigid" in strengths.get(part.get("material"), {})
+        for part in parts
+    )
 
 
 def energies_made(manifest: Manifest) -> tuple[str, bool]:

@@ -9,6 +9,7 @@
 #include "mpm/run/bodies.hpp"
 #include "mpm/run/loads.hpp"
 #include "mpm/run/prepare.hpp"
+#include "step/surface_twin.hpp"
 
 namespace {
 
@@ -171,6 +172,48 @@ void check_steps(mpm::testing::Report& report, Scheme scheme, const Motion3& mot
   CHECK_EQUAL(domain.contact.counts.bodies_max, 3);
 }
 
+/// Two blocks on nodes of their own, one on the other on a floor, with friction and restitution,
+/// and a plate that is moved along the side of one: contact between surfaces. Lists of near points
+/// are made anew from time to time, which takes memory; here they are not.
+template <int D>
+void check_surfaces(mpm::testing::Report& report, double restitution) {
+  mpm::testing::SurfacesGiven<D> given;
+  given.walls[2] = Wall::contact;
+  given.friction = 0.3;
+  given.restitution = restitution;
+  given.shaking = 0.0;
+  given.gravity = -2000.0;
+  mpm::testing::TurnedBlock<D> lower, upper, side;
+  for (mpm::testing::TurnedBlock<D>* const block : {&lower, &upper, &side}) {
+    block->velocity = Vec<double, D>::zero();
+    for (int a = 0; a < D; ++a) {
+      block->centre[a] = 10.0;
+      block->size[a] = 4.0;
+    }
+  }
+  lower.centre[1] = 2.001;
+  upper.centre[1] = 6.002;
+  side.centre[0] = 14.02;
+  side.centre[1] = 3.0;
+  given.bodies = {{{lower}}, {{upper}}, {{side}}};
+  given.bodies[2].kind = BodyKind::prescribed;
+  given.bodies[2].velocity[0] = TimeFunction(-0.02);
+  const mpm::testing::SurfaceTwin<D> twin(given);
+  Simulation<D>& simulation = *twin.simulation;
+  advance(simulation, 600, 1e9);
+  const std::size_t call = allocations_of(simulation, 0);
+  // A stretch of steps in which lists stay.
+  const double& age = simulation.domain.surfaces.age_of_lists;
+  std::size_t steps = 1;
+  for (int turn = 0; turn < 20 && steps > 0; ++turn) {
+    const double before = age;
+    const std::size_t made = allocations_of(simulation, 30) - call;
+    if (age > before) steps = made;
+  }
+  CHECK(simulation.domain.surfaces.touching_max > 0, D);
+  CHECK(steps == 0, steps, D, restitution);
+}
+
 }  // namespace
 
 void test_no_allocation(mpm::testing::Report& report) {
@@ -180,4 +223,8 @@ void test_no_allocation(mpm::testing::Report& report) {
       check_steps<2>(report, scheme, motion);
       check_steps<3>(report, scheme, motion);
     }
+  for (const double restitution : {1.0, 0.5}) {
+    check_surfaces<2>(report, restitution);
+    check_surfaces<3>(report, restitution);
+  }
 }

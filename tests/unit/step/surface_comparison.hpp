@@ -230,7 +230,7 @@ class SurfaceComparison {
 
   /// What acts on bodies and not between them is what faces of the box give.
   void compare_faces() {
-    Vector3 force = Vector3::zero(), moment = force, of_faces = force, moment_of_faces = force;
+    Vector3 force = Vector3::zero(), moment = force, by_walls = force, moment_by_walls = force;
     double size = rounding() * least_force();
     for (const reference::SurfaceBody<D>& body : twin_.surfaces.bodies) {
       force += body.force;
@@ -243,11 +243,11 @@ class SurfaceComparison {
     }
     for (const SurfacePart<D>& part : twin_.simulation->domain.surfaces.parts) {
       for (int a = 0; a < D; ++a)
-        for (const auto& axis : part.of_faces.of) of_faces[a] += axis[0][a] + axis[1][a];
-      moment_of_faces += part.moment_of_faces;
+        for (const auto& axis : part.by_walls.of) by_walls[a] += axis[0][a] + axis[1][a];
+      moment_by_walls += part.moment_by_walls;
     }
-    CHECK_CLOSE(norm(of_faces - force), 0.0, tolerance * size);
-    CHECK_CLOSE(norm(moment_of_faces - moment), 0.0, 10.0 * cell * tolerance * size);
+    CHECK_CLOSE(norm(by_walls - force), 0.0, tolerance * size);
+    CHECK_CLOSE(norm(moment_by_walls - moment), 0.0, 10.0 * cell * tolerance * size);
   }
 
   SurfaceTwin<D>& twin_;
