@@ -127,7 +127,7 @@ def test_a_layer_between_two_planes_is_the_same_from_either(dimension: int) -> N
     )
     simulation = Simulation(case)
     simulation.advance(40)
-    assert simulation.core.contact_summary()["touching_points"] > 1
+    assert simulation.core.contact_summary()["touching_points_max"] > 1
     faces = {face.name: np.array(face.impulse) for face in simulation.core.walls()}
     one, other = faces["x_min"], faces["x_max"]
     assert one[0] != 0.0

@@ -55,12 +55,15 @@ def _bounce(scheme: str, basis: str, cells: int, speed: float, factor: float) ->
     return bounced(scene.start(), speed)
 
 
-def bounced(scene: Scene, speed: float) -> list[float]:
-    """Let the first sphere hit at a speed [m/s] and part; return what `bounce` does."""
+def bounced(scene: Scene, speed: float, every: int = 4) -> list[float]:
+    """Let the first sphere hit at a speed [m/s] and part; return what `bounce` does.
+
+    It is looked at after so many steps, by which the duration is known.
+    """
     said = scene.run(
         1.3 * ANSWER_LASTS[speed],
         lambda s: [s.time, abs(s.impulse()[0]), -_centre(s), s.mean_velocity(0)[0]],
-        4,
+        every,
     )
     return bounce(said)
 

@@ -198,7 +198,7 @@ def hertz_wall(scheme: str, dimension: int, basis: str, cells: int = 20) -> list
     def hit(speed: float) -> list[float]:
         body = ball([-radius - 0.1 * h, 0.0, 0.0], radius, [speed, 0.0, 0.0])
         end = 1.3 * grains.ANSWER_LASTS[speed]
-        return grains.bounced(InBody(3, h, end, {"ball": body}, rubber, {"box": room}), speed)
+        return grains.bounced(InBody(3, h, end, {"ball": body}, rubber, {"box": room}), speed, 1)
 
     return grains.hertz_figures({speed: hit(speed) for speed in (1.0, 0.5)})
 

@@ -250,17 +250,14 @@ struct Surfaces {
     }
   }
 
-  /// Of the normal force of the two, what they felt in the step before (restitution.hpp).
-  double left_of(const SurfaceTouch<D>& t) const {
-    const auto b = static_cast<std::size_t>(t.whom);
-    const bool is_first = is_wall(t.whom) || t.body < b;
-    const auto found =
-        left.find(is_first ? std::pair(t.body, t.whom) : std::pair(b, static_cast<Whom>(t.body)));
-    return found == left.end() ? 1.0 : found->second;
-  }
+  /// The coefficient, times what of the normal force the two felt in the step before.
   double friction_of(const SurfaceTouch<D>& t) const {
-    if (is_wall(t.whom)) return step.walls.friction[axis_of(t.whom)][side_of(t.whom)];
-    return law_of(t.body, static_cast<std::size_t>(t.whom)).mu;
+    const auto b = static_cast<std::size_t>(t.whom);
+    const bool wall = is_wall(t.whom), first = wall || t.body < b;
+    const double mu =
+        wall ? step.walls.friction[axis_of(t.whom)][side_of(t.whom)] : law_of(t.body, b).mu;
+    const auto pair = left.find({first ? t.body : b, first ? t.whom : static_cast<Whom>(t.body)});
+    return pair == left.end() ? mu : pair->second * mu;
   }
 
   /// How the surfaces of a touch move on each other at x_0 = x_p - z n / 2, on a face its foot; by
@@ -281,7 +278,7 @@ struct Surfaces {
 
   /// (S2) at x_0: what s has along the normal by now is turned into the plane, to keep its length.
   void rub(SurfaceTouch<D>& t, const Vec<double, D>& u, Vec<double, D>& s) {
-    const double f = norm(t.push), mu = friction_of(t) * left_of(t), k_t = 0.8 * t.k;
+    const double f = norm(t.push), mu = friction_of(t), k_t = 0.8 * t.k;
     const Vec<double, D> n = normalised(t.push);
     t.rub = Vec<double, D>::zero();
     if (!(mu > 0.0 && f > 0.0)) return;

@@ -64,7 +64,7 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *off_walls(case, bodies),
         *surface_notes(case, bodies),
         *transfer_notes(case),
-        *friction_notes(case, bodies),
+        *friction_notes(case),
         *gas_notes(case),
         *response_notes(case),
         *explosive_notes(case),

@@ -3,21 +3,15 @@
 
 from __future__ import annotations
 
-import math
-
 from mpm3dpp.base.errors import key_text
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.frame import in_body
-from mpm3dpp.case.moduli import moduli_of
 from mpm3dpp.case.pairs import listed_pairs
 
-from .parts import Filled
-
 _LOSSLESS = ("elastic", "neo_hookean")
-_RATIO = 0.01  # Of critical damping, at shear waves of which a quarter is as long as the body.
 
 
-def friction_notes(case: Case, bodies: Filled) -> list[str]:
+def friction_notes(case: Case) -> list[str]:
     """Return a sentence for each material of which bodies lie on friction and lose nothing else.
 
     Constant friction drives waves along the surfaces of elastic bodies (Adams 1995), and what
@@ -33,7 +27,7 @@ def friction_notes(case: Case, bodies: Filled) -> list[str]:
         lossless = material.strength.model in _LOSSLESS and not material.failure
         if lossless and not material.beta and part.damping is None and not case.is_rigid(name):
             trembling.setdefault(part.material, []).append(name)
-    return [_sentence(case, bodies, names) for names in trembling.values()]
+    return [_sentence(case, names) for names in trembling.values()]
 
 
 def _on_friction(case: Case) -> list[str]:
@@ -59,19 +53,11 @@ def _on_friction(case: Case) -> list[str]:
     return [name for name in in_body(case) if walls or any(lies_on(name, one) for one in others)]
 
 
-def _sentence(case: Case, bodies: Filled, names: list[str]) -> str:
+def _sentence(case: Case, names: list[str]) -> str:
     key = f"material.{case.parts()[names[0]].material}"
-    material = case.material[case.parts()[names[0]].material]
-    moduli = moduli_of(material)
-    assert moduli is not None
-    waves = math.sqrt(moduli.G / material.density)
-    masses = min(float(bodies.parts[name].masses.min()) for name in names)
-    size = (masses / material.density) ** (1.0 / case.grid.dimension)
-    beta = 2.0 * _RATIO / (0.5 * math.pi * waves / size)
     others = f" and {len(names) - 1} more" if len(names) > 1 else ""
     return (
         f"{key_text(case.part_path(names[0]))}{others} of {key}: what is elastic and loses nothing "
-        "may tremble on friction and slide where it should stick; give "
-        f'{key}.damping.stiffness, for example "{1e6 * beta:.2g} us" (a hundredth of critical at '
-        "its slowest shear waves), run.settle or contact.restitution"
+        "may tremble on friction and slide where it should stick; give contact.restitution, for "
+        f"example 0.9, {key}.damping.stiffness of some per cent of critical, or run.settle"
     )
