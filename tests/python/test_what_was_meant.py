@@ -3,8 +3,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Any
+
 import pytest
 
+from commands import mpm3dpp
 from mpm3dpp import Case, CaseError
 from mpm3dpp.fill.advisories import notes
 from mpm3dpp.fill.build import build
@@ -80,3 +84,67 @@ def test_a_transfer_that_does_nothing() -> None:
     [note] = of(with_transfer)
     assert "run.transfer does nothing here" in note
     assert of(with_transfer.replace('frame = "material"\n', "")) == []
+
+
+@pytest.mark.parametrize(
+    ("material", "what", "remedy"),
+    [
+        (
+            'library = "copper_ofhc"',
+            "the spall_strength of its equation of state",
+            "give material.m.eos.mie_gruneisen.spall_strength = 0",
+        ),
+        (
+            'density = 1000\nstrength = { elastic = { E = "1 MPa", nu = 0.3 } }\n'
+            "failure = { principal_stress = { limit = 1e5 } }",
+            "its failure model principal_stress",
+            "leave material.m.failure out",
+        ),
+        (
+            "density = 1000\nstrength = { fluid = {} }\neos = { tait = { c0 = 100 } }",
+            "its strength fluid",
+            'give frame = "updated"',
+        ),
+    ],
+)
+def test_what_breaks_a_material_is_named(material: str, what: str, remedy: str) -> None:
+    elastic = 'density = 1000\nstrength = { elastic = { E = "1 MPa", nu = 0.3 } }'
+    sentence = told(BLOCK.replace(elastic, material))[0]
+    assert f"which flows or breaks by {what}" in sentence and remedy in sentence
+
+
+def test_a_change_on_the_command_line_mends_the_file(tmp_path: Path) -> None:
+    """As the remedy of a mistake says; other mistakes are told of the changed case."""
+    (tmp_path / "case.toml").write_text(BLOCK + '[contact]\ninterference = "pressed"\n')
+    assert mpm3dpp("check", "case.toml", cwd=tmp_path).returncode == 2
+    line = ["check", "case.toml", "--set", "contact.interference=set_back"]
+    assert mpm3dpp(*line, cwd=tmp_path).returncode == 0
+    still = mpm3dpp("check", "case.toml", "--set", "run.cfl=0.4", cwd=tmp_path)
+    assert still.returncode == 2 and "pressed" in still.stderr
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_part_of_a_ball_has_as_many_particles_in_a_cell_as_the_whole(dimension: int) -> None:
+    """A quarter and an eighth between planes of symmetry, of 4 cells a radius."""
+
+    def count(cut: bool) -> int:
+        kind = "sphere" if dimension == 3 else "disc"
+        low = 0.0 if cut else -0.02
+        body: dict[str, Any] = {
+            "material": "m",
+            "frame": "material",
+            "cut_at_box": cut,
+            "shape": {kind: {"centre": [0.0] * dimension, "radius": 0.004}},
+        }
+        box = {"lower": [low] * dimension, "upper": [0.02] * dimension, "walls": "slip"}
+        case = Case.model_validate(
+            {
+                "grid": {"dimension": dimension, "cell_size": 1e-3, "box": box},
+                "run": {"end_time": 1.0},
+                "material": {"m": {"density": 1e3, "strength": {"elastic": {"E": 1e6, "nu": 0.3}}}},
+                "body": {"ball": body},
+            }
+        )
+        return build(case).parts["ball"].count
+
+    assert count(True) * 2**dimension == pytest.approx(count(False), rel=0.02)

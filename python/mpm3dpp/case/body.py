@@ -15,7 +15,7 @@ from mpm3dpp.base.frames import ALONG, FRAMES, UPDATED, particles_along
 from mpm3dpp.base.model import CaseModel, Choice, Count, Flag, Text
 from mpm3dpp.base.units import PositiveLength
 from mpm3dpp.shapes.base import MaybeShape
-from mpm3dpp.shapes.cut_round import was_round
+from mpm3dpp.shapes.cut_round import round_of, was_round
 from mpm3dpp.shapes.faces import FACES, has_faces
 from mpm3dpp.shapes.primitives import Disc
 from mpm3dpp.shapes.shells import (
@@ -26,7 +26,6 @@ from mpm3dpp.shapes.shells import (
     default_way,
     no_shells,
     takes_shells,
-    unmoved,
 )
 
 from .grid import Grid
@@ -156,6 +155,7 @@ class Body(CaseModel):
         )
 
     def _radius(self) -> float:
-        """Return the radius of a disc or a ball [m]; infinity of others."""
-        shape = None if self.shape is None else unmoved(self.shape)
-        return shape.radius if isinstance(shape, Disc) else math.inf  # of which spheres are kinds
+        """Return the radius of a disc or ball, or of a part of one [m]; infinity of others."""
+        found = None if self.shape is None else round_of(self.shape)
+        whole = None if found is None else found.whole
+        return whole.radius if isinstance(whole, Disc) else math.inf  # of which spheres are kinds

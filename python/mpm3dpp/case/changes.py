@@ -6,6 +6,7 @@ from __future__ import annotations
 import copy
 import re
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mpm3dpp.base.errors import CaseError, guessed
@@ -33,17 +34,29 @@ def with_changes(case: Case, changes: Changes) -> Case:
         rule = "the case is of no case file, and only those have keys to change"
         raise CaseError(rule, "change its objects; of another program's file, import it first")
     before = case._changes
-    if case.case_hash != _made(case, before).case_hash:
+    case_type, text, name = type(case), case._text, str(case.source)
+    if case.case_hash != _made(case_type, text, name, before).case_hash:
         rule = "objects of this case were changed, which its file does not know of"
         raise CaseError(rule, "load it again, and change keys alone")
     # In the order in which they were made: the last one of a key counts, or of a table about it.
-    return _made(case, {k: v for k, v in before.items() if k not in changes} | dict(changes))
+    kept = {k: v for k, v in before.items() if k not in changes}
+    return _made(case_type, text, name, kept | dict(changes))
 
 
-def _made(case: Case, changes: Changes) -> Case:
-    name = str(case.source)
-    tables = changed_tables(case._text, name, changes)
-    lines = case_file.locate_keys(case._text, name)
+def changed_file(case_type: type[Case], path: Path, changes: Changes) -> Case:
+    """Return the case of a file with other values of some keys, which may mend what is wrong in it.
+
+    Raises:
+        CaseError: the file cannot be read; there is no such key; or what the changed case breaks.
+    """
+    case = _made(case_type, case_file.read_text(path), str(path), changes)
+    case.note_file(path)
+    return case
+
+
+def _made(case_type: type[Case], text: str, name: str, changes: Changes) -> Case:
+    tables = changed_tables(text, name, changes)
+    lines = case_file.locate_keys(text, name)
     for key in changes:
         path = tuple(
             int(part) if part.isdigit() and above not in _NAMED else part  # A body may be "1".
@@ -52,8 +65,8 @@ def _made(case: Case, changes: Changes) -> Case:
         lines = {at: line for at, line in lines.items() if at[: len(path)] != path}
         for length in range(1, len(path) + 1):  # Tables that the file has not, too.
             lines.setdefault(path[:length], case_file.CHANGED)
-    found = type(case).from_tables(tables, name, lines)
-    found._text, found._changes = case._text, dict(changes)
+    found = case_type.from_tables(tables, name, lines)
+    found._text, found._changes = text, dict(changes)
     return found
 
 

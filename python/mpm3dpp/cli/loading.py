@@ -16,13 +16,16 @@ def load(
     path: Path, units: str | None, quiet: bool = False, changes: list[str] | None = None
 ) -> Case:
     """Return the case of a file; what to know about it goes to stderr."""
-    from mpm3dpp.importers import load_any
+    from mpm3dpp.importers import load_any, reader_of
 
+    if changes:
+        from mpm3dpp.case.changes import changed_file, changes_of, with_changes
+
+        if units is None and reader_of(path) is None:  # A change may mend the file.
+            from mpm3dpp.case.case import Case
+
+            return changed_file(Case, path, changes_of(changes))
     loaded, notes = load_any(path, units)
     if not quiet:
         print_notes(notes)
-    if changes:
-        from mpm3dpp.case.changes import changes_of, with_changes
-
-        loaded = with_changes(loaded, changes_of(changes))
-    return loaded
+    return with_changes(loaded, changes_of(changes)) if changes else loaded
