@@ -10,6 +10,7 @@ import pytest
 
 from commands import mpm3dpp
 from mpm3dpp import Case, CaseError
+from mpm3dpp.base.units import to_si
 from mpm3dpp.fill.advisories import notes
 from mpm3dpp.fill.build import build
 
@@ -45,6 +46,9 @@ SHAPE = 'shape = { box = { lower = [0, 0], upper = ["4 mm", "4 mm"] } }'
         ('elastic = { E = "1 MPa", nu = 0.3 }', "von_mises = {}", 'did you mean "j2"?'),
         ("[body.b]", "restitution = 0.5\n[body.b]", "give contact.restitution, or one of its own"),
         ("[body.b]", "friction = 0.5\n[body.b]", "give contact.friction, or one of its own"),
+        ("[grid]", '[grid]\nframe = "material"', "body.NAME.frame, grains.NAME.frame"),
+        ("density = 1000", 'density = 1000\nframe = "material"', "body.NAME.frame"),
+        ("[body.b]", "[contact]\nmu = 0.5\n[body.b]", 'did you mean "friction"?'),
         (SHAPE, f"shape = {{ rotate = {{ angle = 20, {SHAPE} }} }}", 'write its unit, "30 deg"'),
     ],
 )
@@ -121,6 +125,13 @@ def test_a_change_on_the_command_line_mends_the_file(tmp_path: Path) -> None:
     assert mpm3dpp(*line, cwd=tmp_path).returncode == 0
     still = mpm3dpp("check", "case.toml", "--set", "run.cfl=0.4", cwd=tmp_path)
     assert still.returncode == 2 and "pressed" in still.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "pascals"), [("5 N/mm2", 5e6), ("5 N/m2", 5.0), ("3 kN/cm2", 3e7)]
+)
+def test_powers_without_a_caret(text: str, pascals: float) -> None:
+    assert to_si(text, "Pa") == pytest.approx(pascals, rel=1e-15)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -48,7 +48,12 @@ _OF_PAIRS = (
     "it is of two bodies: give contact.{0}, or one of its own to a pair, [[contact.pair]] with "
     "bodies = [..., ...] and {0}"
 )
-_ELSEWHERE = {key: _OF_PAIRS.format(key) for key in ("restitution", "friction")}
+_ELSEWHERE = {
+    **{key: _OF_PAIRS.format(key) for key in ("restitution", "friction")},
+    "frame": "it is of a body or an entry of grains: body.NAME.frame, grains.NAME.frame",
+}
+# What keys are named elsewhere.
+_OTHER_NAMES = dict.fromkeys(("mu", "cof", "friction_coefficient"), "friction")
 
 
 def unknown_key(key: str, known: Iterable[str]) -> tuple[str, str]:
@@ -59,4 +64,4 @@ def unknown_key(key: str, known: Iterable[str]) -> tuple[str, str]:
     elsewhere = _ELSEWHERE.get(key.lower())
     if elsewhere is not None:
         return "is not a key of this table", elsewhere
-    return "is not a known key", nearest(key, known)
+    return "is not a known key", nearest(_OTHER_NAMES.get(key.lower(), key), known)

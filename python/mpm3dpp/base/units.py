@@ -72,6 +72,7 @@ _UNIT = re.compile(
     r"1?(?:[\s*/()·.-]|[^\W\d]\d{0,2}(?!\d)"
     r"|(?:\^|\*\*)\s*\(?[+-]?\d{1,2}(?!\d)(?!\)?\s*(?:\^|\*\*)))*"
 )
+_POWER = re.compile(r"(?<=m)(?=[234]\b)")  # m3 is m^3, mm2 is mm^2.
 _LONGEST = 200  # Characters of a quantity.
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf))(.*)", re.S)
@@ -149,9 +150,7 @@ def _by_pint(text: str, number: str, name: str, unit: str) -> float:
     if _UNIT.fullmatch(name) is None:
         raise CaseError(unknown, remedy, value=text)
     try:
-        given = registry().Quantity(
-            Decimal(number), registry().parse_units(name.replace("m3", "m^3"))
-        )
+        given = registry().Quantity(Decimal(number), registry().parse_units(_POWER.sub("^", name)))
     except Exception as error:  # pint's parser raises many kinds for text that is no unit
         raise CaseError(unknown, remedy, value=text) from error
     if unit == "" and "radian" in str(

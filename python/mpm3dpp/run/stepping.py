@@ -12,6 +12,7 @@ import numpy as np
 
 from mpm3dpp.base.errors import RunError
 from mpm3dpp.base.signals import Notice, sentence
+from mpm3dpp.case.frame import all_in_bodies
 from mpm3dpp.io.background import BackgroundWriter
 from mpm3dpp.io.history import HistoryWriter
 from mpm3dpp.io.manifest import Status
@@ -57,7 +58,7 @@ class Stepping:
         self._history, self._watch, self._progress = history, watch, progress
         self._notice = notice
         case, core = simulation.case, simulation.core
-        self._contact = case.contact_enabled
+        self._contact, self._by_surfaces = case.contact_enabled, all_in_bodies(case)
         every = case.output.history_every
         most = min(every if self._contact else _BLOCK, core.history_capacity // 2)
         # Where they may end the run it is the same step with and without a device.
@@ -149,7 +150,9 @@ class Stepping:
         if due or ends or (touched > self._touched and core.time >= 0.0):
             results.write(core)
         self._touched = touched
-        touching = _touching(core.contact_summary()) if self._contact else None
+        touching = None
+        if self._contact:
+            touching = _touching(core.contact_summary(), self._by_surfaces)
         kinetic, internal = rows[-1, 3:5]
         self._progress.update(core.time, core.step, core.dt, kinetic, internal, touching)
         if ends:
@@ -192,10 +195,12 @@ def tell(progress: Progress, problem: str) -> None:
         progress.note(f"warning: no checkpoint: {problem}")
 
 
-def _touching(contact: dict[str, Any]) -> tuple[int, str]:
+def _touching(contact: dict[str, Any], by_surfaces: bool) -> tuple[int, str]:
     """Return how many nodes are overlapped, or points of surfaces touch, and the word for them."""
     points = int(contact.get("touching_points", 0))
-    return (points, "points") if points else (int(contact["overlapped_nodes"]), "nodes")
+    if points or by_surfaces:
+        return points, "points"
+    return int(contact["overlapped_nodes"]), "nodes"
 
 
 def _touched(pairs: list[Any]) -> int:
