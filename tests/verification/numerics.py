@@ -43,7 +43,8 @@ class Numerics:
         name, _, factor = name.partition("@")
         name, _, response = name.partition("~")
         if name in (DEFAULT, MATERIAL):
-            cfl = float(factor) if factor else choices.AFFINE["cfl"]
+            usual = choices.IN_BODIES if name == MATERIAL else choices.AFFINE
+            cfl = float(factor) if factor else usual["cfl"]
             response, frame = response or choices.RESPONSE, name if name == MATERIAL else ""
             return cls(choices.BASIS, choices.TRANSFER, None, cfl, response, frame)
         basis, _, transfer = name.partition("+")

@@ -26,6 +26,9 @@ _DEFAULTS = _core.Settings()
 BASIS, TRANSFER = _DEFAULTS.grid.basis, _DEFAULTS.run.transfer.word
 AFFINE: dict[str, Any] = {"scheme": _DEFAULTS.run.scheme, "cfl": _DEFAULTS.run.cfl}
 OTHERS: dict[str, Any] = {"scheme": "musl", "cfl": 0.25}
+# At .5 what swings on springs of contact, a layer of half a cell, takes four steps a period, the
+# resonance of fourth order of leapfrog (Mandziuk & Schlick 1995); see decision 0079.
+IN_BODIES: dict[str, Any] = {"scheme": _DEFAULTS.run.scheme, "cfl": 0.48}
 OTHER_TRANSFER = "flip"
 RESPONSE, FLOWING_RESPONSE, OTHER_RESPONSE = _DEFAULTS.contact.response, "by_matter", "impulses"
 SHEARED, PRESSED = "von_mises", "pressure"
@@ -77,7 +80,8 @@ def _run(run: Run, basis: str, in_space: bool) -> Run:
     if "transfer" not in given:
         chosen["transfer"] = Transfer.model_validate(usual_transfer(basis))
     word = chosen.get("transfer", run.transfer).word
-    more = AFFINE if _core.transfers[word]["affine"] or not in_space else OTHERS
+    more = AFFINE if _core.transfers[word]["affine"] else OTHERS
+    more = more if in_space else IN_BODIES
     return _with(run, chosen | {key: value for key, value in more.items() if key not in given})
 
 
