@@ -45,8 +45,8 @@ _INSTEAD = {
 
 # What stands in another table here.
 _OF_PAIRS = (
-    "it is of two bodies: give contact.{0}, or one of its own to a pair, [[contact.pair]] with "
-    "bodies = [..., ...] and {0}"
+    "it is of two bodies, or of a body and walls: give contact.{0}, or one of its own to a pair, "
+    "[[contact.pair]] with bodies = [..., ...] and {0}"
 )
 _ELSEWHERE = {
     **{key: _OF_PAIRS.format(key) for key in ("restitution", "friction")},

@@ -91,7 +91,9 @@ def body_lines(manifest: Manifest) -> list[str]:
 
     That is before and after, then the velocity; of grains the mean one. And what has eroded.
     """
-    flat = manifest.case.get("grid", {}).get("dimension") == 2
+    grid = manifest.case.get("grid", {})
+    flat, walls = grid.get("dimension") == 2, grid.get("box", {}).get("walls", {})
+    whole = not {"slip", "fixed"} & set(walls.values())
     unit, axes = ("J/m", "xy") if flat else ("J", "xyz")
     given = manifest.case.get("body", {})
     lines = []
@@ -106,8 +108,8 @@ def body_lines(manifest: Manifest) -> list[str]:
         final = [v if abs(v) > _ROUNDING * after else 0.0 for v in velocities[1]]
         eroded = found["final"].get("eroded_mass", 0.0)
         lines.append(
-            f"{name}: {before:.4g} -> {after:.4g} m/s ({_listed(final)}){_spins(found, flat)}, "
-            f"kinetic energy {energies} {unit}"
+            f"{name}: {before:.4g} -> {after:.4g} m/s ({_listed(final)})"
+            f"{_spins(found, flat) if whole else ''}, kinetic energy {energies} {unit}"
             + (f", eroded {eroded:.4g} kg{unit[1:]}" if eroded else "")
         )
     if len(lines) > _BODIES_SHOWN:
@@ -117,7 +119,10 @@ def body_lines(manifest: Manifest) -> list[str]:
 
 
 def _spins(found: dict[str, dict[str, float]], flat: bool) -> str:
-    """Return how fast a body turns before and after, where that has a share of its energy."""
+    """Return how fast a body turns before and after, where that has a share of its energy.
+
+    Halves and quarters before planes of symmetry are not asked: they do not turn as wholes.
+    """
     axes = "z" if flat else "xyz"
     turns = any(
         sum(state.get(f"spin_{x}", 0.0) * state.get(f"angular_momentum_{x}", 0.0) for x in axes)
