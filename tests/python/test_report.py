@@ -118,6 +118,29 @@ def test_a_line_for_each_body_that_moves_freely() -> None:
     assert len(body_lines(found)) == 11
 
 
+def test_spins_are_told_of_whole_bodies_that_turn() -> None:
+    """A disc that has begun to roll; rounding at the start is none."""
+
+    def rolls(spin: float, angular_momentum: float, kinetic: float) -> dict[str, float]:
+        found = of_body((kinetic, 0, 0), kinetic)
+        for name, last in (("spin", spin), ("angular_momentum", angular_momentum)):
+            found |= {f"{name}_x": 0.0, f"{name}_y": 0.0, f"{name}_z": last}
+        return found
+
+    disc = {"initial": rolls(1e-14, 0.0, 0.0), "final": rolls(-20.0, -0.02, 1.0)}
+    case: dict[str, Any] = {"grid": {"dimension": 2}}
+    found: Any = SimpleNamespace(bodies={"disc": disc}, case=case)
+    [line] = body_lines(found)
+    assert line == "disc: 0 -> 1 m/s (1, 0), spin 0 -> -20 rad/s, kinetic energy 0 -> 1 J/m"
+    case["grid"] = {"dimension": 3}
+    assert "spin 0 -> 20 rad/s (0, 0, -20)" in body_lines(found)[0]
+    case["grid"]["box"] = {"walls": {"x_min": "slip"}}  # half of it, before a plane of symmetry
+    assert "spin" not in body_lines(found)[0]
+    case["grid"].clear()
+    disc["final"] = rolls(-1e-3, -1e-6, 1.0)
+    assert "spin" not in body_lines(found)[0]
+
+
 @pytest.mark.parametrize(
     ("response", "bodies", "time", "is_said"),
     [
