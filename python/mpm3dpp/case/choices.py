@@ -26,9 +26,9 @@ _DEFAULTS = _core.Settings()
 BASIS, TRANSFER = _DEFAULTS.grid.basis, _DEFAULTS.run.transfer.word
 AFFINE: dict[str, Any] = {"scheme": _DEFAULTS.run.scheme, "cfl": _DEFAULTS.run.cfl}
 OTHERS: dict[str, Any] = {"scheme": "musl", "cfl": 0.25}
-# At .5 what swings on springs of contact, a layer of half a cell, takes four steps a period, the
-# resonance of fourth order of leapfrog (Mandziuk & Schlick 1995); see decision 0079.
-IN_BODIES: dict[str, Any] = {"scheme": _DEFAULTS.run.scheme, "cfl": 0.48}
+# Quadratic B-splines. What swings on springs of contact, a layer of half a cell, takes four steps a
+# period at .5, the resonance of fourth order of leapfrog (Mandziuk & Schlick 1995); decision 0079.
+IN_BODIES: dict[str, Any] = {"scheme": _DEFAULTS.run.scheme, "cfl": 0.4}
 OTHER_TRANSFER = "flip"
 RESPONSE, FLOWING_RESPONSE, OTHER_RESPONSE = _DEFAULTS.contact.response, "by_matter", "impulses"
 SHEARED, PRESSED = "von_mises", "pressure"
@@ -81,7 +81,8 @@ def _run(run: Run, basis: str, in_space: bool) -> Run:
         chosen["transfer"] = Transfer.model_validate(usual_transfer(basis))
     word = chosen.get("transfer", run.transfer).word
     more = AFFINE if _core.transfers[word]["affine"] else OTHERS
-    more = more if in_space else IN_BODIES
+    if not in_space and usual_transfer(basis) == TRANSFER:
+        more = IN_BODIES
     return _with(run, chosen | {key: value for key, value in more.items() if key not in given})
 
 

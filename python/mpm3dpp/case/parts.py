@@ -40,7 +40,7 @@ class Run(_Run):
 
     With grid.basis = "gimp" or "linear" the default transfer is "flip"; with "flip", "pic" and
     "xpic" the default scheme is "musl", and cfl 0.25. Where all bodies have nodes of their own
-    (`frame = "material"`) there is no transfer, and the default cfl is 0.48.
+    (`frame = "material"`) there is no transfer, and the default cfl is 0.4 with the default basis.
 
     Attributes:
         end_time: [s].
