@@ -214,7 +214,7 @@ def test_a_block_stays_below_the_angle_of_friction_and_slides_above() -> None:
 
 @pytest.mark.parametrize(("cells", "left"), [(6, 0.975), (20, 0.99)])
 def test_a_soft_block_hits_three_times(cells: int, left: float) -> None:
-    """Kinetic, internal and springs' energy less the work of gravity: .980 and .996 are left, of
+    """Kinetic, internal and springs' energy less the work of gravity: .981 and .993 are left, of
     six cells .36 to .5 in the updated frame."""
     h, E, density = 1e-3, 1e6, 1000.0
     length, g = cells * h, 400.0 * 6 / cells
