@@ -89,7 +89,7 @@ def test_grains(dimension: int, restitution: float) -> None:
 
 def test_a_ring_that_touches_itself() -> None:
     """Squeezed by a wall that it hits at 50 m/s until its inner faces meet."""
-    case, steps = Case.from_text(RING), 1100
+    case, steps = Case.from_text(RING), 1350
     one, found = after(case, steps, 1)
     places, start = (one.column("ring", name) for name in ("position", "reference_position"))
     inner = np.hypot(start[:, 0] - 0.039, start[:, 1]) < 0.031
