@@ -46,7 +46,8 @@ void restitute(Surfaces<D>& surfaces, const Meeting<D>& met, std::size_t a, Whom
   surfaces.left[{a, whom}] = 1.0 - taken / N;
   Vector3 force = -taken * n - drag * normalised(u_t);
   const double allowed = mu * met.sizes * (1.0 - taken / N);
-  if (norm(met.rub) > allowed) force = force - (1.0 - allowed / norm(met.rub)) * met.rub;
+  if (!law.bonded && norm(met.rub) > allowed)
+    force = force - (1.0 - allowed / norm(met.rub)) * met.rub;
   first.push_whole(x, force);
   if (second) second->push_whole(x, -1.0 * force);
 }

@@ -96,8 +96,10 @@ void add_restitution(Domain<D>& domain) {
         std::min(2.0 * beta * std::sqrt(pair.stiffness * mass), most_in_step * mass / dt) * swing;
     Vector3 rub = swing > 0.0 ? (-std::min(drag, most) / swing) * along : Vector3::zero();
     // Friction of points is bounded by what was left in the step before: what it is more by now.
+    // What bonds pull is no friction.
     const double allowed = law.friction * pair.size * (1.0 - taken / push);
-    if (rubbed > allowed) rub -= (1.0 - allowed / rubbed) * in_space<D>(pair.on_first - pair.push);
+    if (!law.bonded && rubbed > allowed)
+      rub -= (1.0 - allowed / rubbed) * in_space<D>(pair.on_first - pair.push);
     const Vector3 back = -taken * normal;
     pair.left = 1.0 - taken / push;
     for (int a = 0; a < D; ++a) pair.on_first[a] += back[a] + rub[a];
