@@ -16,7 +16,8 @@ def load(
     path: Path, units: str | None, quiet: bool = False, changes: list[str] | None = None
 ) -> Case:
     """Return the case of a file; what to know about it goes to stderr."""
-    from mpm3dpp.importers import load_any, reader_of
+    from mpm3dpp.base.readers import reader_of
+    from mpm3dpp.importers import load_any
 
     if changes:
         from mpm3dpp.case.changes import changed_file, changes_of, with_changes
