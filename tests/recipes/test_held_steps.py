@@ -59,7 +59,8 @@ def energies(simulation: Simulation, steps: int) -> tuple[np.ndarray, np.ndarray
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_disc_that_vibrates_keeps_its_energy(dimension: int) -> None:
-    """Some hundred periods of a tenth of strain; 4.6 % a second were made by steps that follow."""
+    """158 periods of .03 of strain: .04 % are lost; steps that followed the waves made 1 %. In a
+    period energy swings by less than .2 %, as central differences have it."""
     stretch = [{"expression": one} for one in ("200 * x", "-200 * y", "0 * z")]
     simulation = disc(dimension, stretch[:dimension], 1.0)
     energy, changes = energies(simulation, 10000 if dimension == 2 else 4000)
@@ -69,7 +70,7 @@ def test_a_disc_that_vibrates_keeps_its_energy(dimension: int) -> None:
 
 
 def test_a_disc_that_flies_to_and_fro_makes_no_energy() -> None:
-    """At .03 of the waves' speed, some twenty hits; steps that follow made 13 % of it."""
+    """A dozen hits at .03 of the waves' speed take .8 %; steps that followed the waves made 2 %."""
     simulation = disc(2, [3.0, 0.0], 1.0)
     energy, changes = energies(simulation, 12000)
     assert 0.95 < energy[-1] <= 1.0 and energy.max() < 1.003

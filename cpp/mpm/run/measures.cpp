@@ -101,11 +101,12 @@ std::size_t bytes_of_surfaces(const Surfaces<D>& surfaces) {
   return parts + bytes_of(surfaces.part_of) + bytes_of(surfaces.hosts) + bytes_of(surfaces.points) +
          bytes_of(surfaces.places) + bytes_of(surfaces.bonds) + bytes_of(surfaces.on_bodies) +
          bytes_of(surfaces.moving) + bytes_of(surfaces.between_parts) +
-         bytes_of(surfaces.on_bodies_by_part) + bytes_of(surfaces.others.hosts) +
-         bytes_of(surfaces.others.places_at_start) + bytes_of(surfaces.set_back) +
-         bytes_of(surfaces.places_of_lists) + bytes_of(surfaces.in_touch) +
-         bytes_of(surfaces.place_of_motion) + bytes_of(surfaces.between) +
-         bytes_of(surfaces.on_hosts) + bytes_of(surfaces.place_on_hosts);
+         bytes_of(surfaces.on_bodies_by_part) + bytes_of(surfaces.F_on_hosts) +
+         bytes_of(surfaces.others.hosts) + bytes_of(surfaces.others.places_at_start) +
+         bytes_of(surfaces.set_back) + bytes_of(surfaces.places_of_lists) +
+         bytes_of(surfaces.in_touch) + bytes_of(surfaces.place_of_motion) +
+         bytes_of(surfaces.between) + bytes_of(surfaces.on_hosts) +
+         bytes_of(surfaces.place_on_hosts);
 }
 
 }  // namespace
@@ -116,11 +117,11 @@ Bytes bytes_of(const Simulation<D>& simulation) {
   Bytes r;
   for (const ParticlePool<D>& of : domain.pools) r.particles += of.bytes();
   r.particles += domain.list_scratch.bytes();
-  r.grid = bytes_of(domain.grid) + domain.followers.bytes();
+  r.grid = bytes_of(domain.grid) + domain.followers.bytes() + bytes_of(domain.followers.follow);
   if (domain.has_contact()) r.contact = bytes_of(domain.contact);
   r.contact += bytes_of_surfaces(domain.surfaces);
-  r.other = bytes_of(domain.sums) + simulation.history.bytes() + bytes_of(domain.part_energies) +
-            bytes_of(domain.face_parts);
+  r.other = bytes_of(domain.sums) + bytes_of(domain.work_of_nodes) + simulation.history.bytes() +
+            bytes_of(domain.part_energies) + bytes_of(domain.face_parts);
   for (std::size_t* bytes : {&r.particles, &r.grid, &r.contact, &r.other})
     *bytes = static_cast<std::size_t>(
         all_sum(*domain.grid.partition.comm, static_cast<std::int64_t>(*bytes)));

@@ -192,12 +192,13 @@ void press_part(Domain<D>& domain, SurfacePart<D>& part) {
   part.by_walls = {};
   part.moment_by_walls = Vector3::zero();
   part.at_walls = false;
+  const bool takes = restitution_takes(domain.contact_settings);
   for (SurfaceTouch<D>& touch : part.touches) {
     touch.reach = reach_of(domain, touch.point, surfaces.places[touch.point] + touch.arm);
     touch.rub = Vec<double, D>::zero();
     touch.pressed_in = 0.0;
-    const double mu = friction_with(domain, part.body, touch.opposite) *
-                      left_by_restitution(domain, part.body, touch.opposite);
+    double mu = friction_with(domain, part.body, touch.opposite);
+    if (takes && mu > 0.0) mu *= left_by_restitution(domain, part.body, touch.opposite);
     const MemoryOfTouch<D>* const known = find_kept(part.kept, touch.point, touch.opposite);
     Levelled<D>* const levelled = find_kept(part.levelled, touch.point, touch.opposite);
     const bool must_know_slip = !known || mu > 0.0 || levelled;

@@ -19,10 +19,9 @@ template <int D>
 void add_restitution(Domain<D>& domain);
 
 /// Of the normal force that springs of the two have, what the bodies feel by add_restitution() of
-/// the step before: Coulomb's law bounds friction by that.
+/// the step before: Coulomb's law bounds friction by that. Where restitution_takes().
 template <int D>
 double left_by_restitution(const Domain<D>& domain, int body, Opposite opposite) {
-  if (!restitution_takes(domain.contact_settings)) return 1.0;
   const std::vector<ActingBetween<D>>& all = domain.surfaces.between;
   const bool is_first = is_wall(opposite) || body <= opposite;
   const auto wanted = is_first ? std::pair(body, opposite) : std::pair(opposite, body);

@@ -37,7 +37,7 @@ _Table = TypeVar("_Table", bound=CaseModel)
 
 
 def with_choices(
-    basis: str, run: Run, contact: Contact, flows: bool, in_space: bool = True
+    basis: str, run: Run, contact: Contact, flows: bool, in_space: bool
 ) -> dict[str, Run | Contact]:
     """Return `run` and `contact` of a case with what they leave out, by their names.
 

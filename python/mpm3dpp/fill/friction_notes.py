@@ -6,7 +6,7 @@ from __future__ import annotations
 from mpm3dpp.base.errors import key_text
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.frame import in_body
-from mpm3dpp.case.pairs import listed_pairs
+from mpm3dpp.case.pairs import bonds_of, laws_of
 
 _LOSSLESS = ("elastic", "neo_hookean")
 
@@ -33,16 +33,13 @@ def friction_notes(case: Case) -> list[str]:
 def _on_friction(case: Case) -> list[str]:
     """Return the entries on nodes of their own that others, or walls, rub without restitution."""
     parts, firsts = case.parts(), case.first_bodies()
-    listed, usual = listed_pairs(case), case.contact
+    usual, bonds = case.contact, set(bonds_of(case))
+    laws = {(a, b): law for a, b, *law in laws_of(case)}
 
     def rubs(first: str, second: str) -> bool:
-        pair = listed.get((min(firsts[first], firsts[second]), max(firsts[first], firsts[second])))
-        friction, restitution = usual.friction, usual.restitution
-        if pair is not None:
-            friction = friction if pair.friction is None else pair.friction
-            restitution = restitution if pair.restitution is None else pair.restitution
-        bonded = pair is not None and pair.bonded
-        return friction > 0.0 and restitution == 1.0 and not bonded
+        a, b = sorted((firsts[first], firsts[second]))
+        friction, restitution = laws.get((a, b), (usual.friction, usual.restitution))
+        return friction > 0.0 and restitution == 1.0 and (a, b) not in bonds
 
     walls = any(case.grid.wall_friction(usual.friction)) and usual.restitution == 1.0
 

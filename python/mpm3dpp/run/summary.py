@@ -7,7 +7,7 @@ import math
 import textwrap
 
 from mpm3dpp.case.case import Case
-from mpm3dpp.case.frame import in_body
+from mpm3dpp.case.frame import all_in_bodies, in_body
 from mpm3dpp.case.load_pieces import pieces
 from mpm3dpp.case.matter import liquids_that_meet, parts_by_matter
 from mpm3dpp.fill.advisories import fastest, notes
@@ -67,11 +67,10 @@ def steps_in_words(case: Case, bodies: Filled) -> str:
 
 def _stepping(case: Case) -> str:
     """Return how what deforms is stepped, in its own frame or by the transfer of the run."""
-    own, deform = in_body(case), [name for name in case.parts() if not case.is_rigid(name)]
     updated = f"{case.run.scheme}, {case.run.transfer.word}"
-    if not own:
+    if not in_body(case):
         return updated
-    return "leapfrog of nodes in bodies" + ("" if len(own) == len(deform) else f"; {updated}")
+    return "leapfrog of nodes in bodies" + ("" if all_in_bodies(case) else f"; {updated}")
 
 
 def _step_rule(case: Case, bodies: Filled) -> str:
