@@ -202,7 +202,7 @@ def test_a_block_hits_with_an_edge(against: str, dimension: int, along: float, m
     columns, seen = run_and_look(simulation, 5, lambda s: [part(s, name) for name in names])
     times, (x, y, spin) = np.array([t for t, _ in seen]), np.array([of for _, of in seen]).T
     gained = mass * np.array([x[-1] - along, y[-1] + 1.0])
-    taken = columns["friction"][-1] + columns["contact"][-1]
+    taken = sum(columns[name][-1] for name in ("friction", "restitution", "contact"))
     assert energy(columns)[-1] + taken / columns["kinetic"][0] == pytest.approx(1.0, abs=1e-3)
     assert energy(columns).max() < 1.0005
     if mu:

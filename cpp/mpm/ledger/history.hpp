@@ -51,6 +51,8 @@ inline constexpr auto history_terms = std::to_array<HistoryTerm>({
      [](const StepState& s) { return s.ledger.viscous; }, Role::energy},
     {"friction", "J", "work of friction so far",
      [](const StepState& s) { return s.ledger.friction; }, Role::energy},
+    {"restitution", "J", "energy that `contact.restitution` and that of pairs have taken",
+     [](const StepState& s) { return s.ledger.restitution; }, Role::energy},
     {"contact", "J", "energy that normal contact has lost, negative: made; an error",
      [](const StepState& s) { return s.ledger.contact; }, Role::error},
     {"springs", "J", "energy that springs of contact hold and give back",

@@ -1,7 +1,7 @@
 #pragma once
 // Where the energy and the momentum go. Every term is accumulated from its own sums:
-//   kinetic + internal + plastic + viscous + friction + contact + springs + absorbed + damped
-//   + eroded + left + bounded + numerical - external = start + residual.
+//   kinetic + internal + plastic + viscous + friction + restitution + contact + springs + absorbed
+//   + damped + eroded + left + bounded + numerical - external = start + residual.
 //
 // Derivation: a particle's velocity changes by the interpolated increments
 // dv_p = sum N_ip f_i dt / m_i, eq. (17), so
@@ -18,6 +18,7 @@
 // - contact: normal contact that does not exactly conserve energy, with dv from eqs. (11)-(15)
 //   alone; what springs hold after the step is no loss (springs). Walls that touch count in
 //   friction, contact and springs, with the work of their forces in the middle of the step.
+// - restitution: what is taken of bodies as wholes as they part (surfaces/restitution.cpp).
 //
 // A body whose motion is prescribed gets the work that this takes: the change of its kinetic energy
 // and what contact takes from it, at the mean velocity of the step. Gravity does not act on it.
@@ -55,9 +56,9 @@ struct StoredInSurfaces {
 };
 
 struct Ledger {
-  double kinetic = 0.0, internal = 0.0, plastic = 0.0, viscous = 0.0, friction = 0.0, contact = 0.0,
-         springs = 0.0, external = 0.0, absorbed = 0.0, damped = 0.0, eroded = 0.0, left = 0.0,
-         bounded = 0.0, mapping = 0.0,
+  double kinetic = 0.0, internal = 0.0, plastic = 0.0, viscous = 0.0, friction = 0.0,
+         restitution = 0.0, contact = 0.0, springs = 0.0, external = 0.0, absorbed = 0.0,
+         damped = 0.0, eroded = 0.0, left = 0.0, bounded = 0.0, mapping = 0.0,
          time_integration = 0.0;  // [J]
   double damped_stiffness = 0.0;  // the part of damped that damping of materials has taken [J]
   double unbalanced = 0.0;        // forces out of balance over those applied, of a run that settles
@@ -79,8 +80,8 @@ struct Ledger {
 
   double numerical() const { return mapping + time_integration + transferred; }
   double residual() const {
-    return kinetic + internal + plastic + viscous + friction + contact + springs + absorbed +
-           damped + eroded + left + bounded + numerical() - external - start;
+    return kinetic + internal + plastic + viscous + friction + restitution + contact + springs +
+           absorbed + damped + eroded + left + bounded + numerical() - external - start;
   }
   /// Energy made by numerics, as a fraction of the largest energy brought in; 0 while there is
   /// none. What transfers take does not hide what others make, and what they make on balance
@@ -154,6 +155,7 @@ struct Ledger {
     bounded += s.stress.bounded;
     energy_floor += s.stress.energy_floor;
     friction += contacts.friction - (s.wall_friction.first + s.wall_friction.second) + rubbed;
+    restitution -= s.restitution;
     const double in_nodes = springs - in_surfaces.push - in_surfaces.rub,
                  stored = contacts.stored + s.wall_stored;
     contact +=
@@ -175,7 +177,7 @@ struct Ledger {
     if (affine)
       transferred += s.force_work + s.gravity_first + s.load_first + s.dashpot_first +
                      s.wall_push.first + s.wall_friction.first + s.damping_first + s.second_order +
-                     s.surface_push + s.surface_rub - s.prescribed.work -
+                     s.surface_push + s.surface_rub + s.restitution - s.prescribed.work -
                      (contacts.energy + contacts.friction_first + contacts.force_work);
     time_integration += s.made_rigid;
     time_integration -= s.stress.internal + s.stress.plastic + s.stress.viscous + s.stress.damped +

@@ -50,7 +50,9 @@ struct PatchSums {
   double dashpot_first = 0.0, dashpot_second = 0.0;  // the same of walls that absorb [J]
   Work wall_push, wall_friction;  // the same of walls that touch: normal forces, friction [J]
   double wall_stored = 0.0;       // in their springs, after the step [J]
-  double surface_push = 0.0, surface_rub = 0.0;      // work of contact between surfaces [J]
+  // Work of contact between surfaces: of springs, of friction, of what takes energy as bodies part
+  // [J].
+  double surface_push = 0.0, surface_rub = 0.0, restitution = 0.0;
   double damping_first = 0.0, damping_second = 0.0;  // the same of damping of motions [J]
   // Sizes of the forces out of balance at the nodes and of those applied, while a run settles [N].
   double unbalanced = 0.0, applied = 0.0;
@@ -95,7 +97,8 @@ struct PatchSums {
                             &wall_friction.second,
                             &wall_stored,
                             &surface_push,
-                            &surface_rub})
+                            &surface_rub,
+                            &restitution})
       f(*x);
     for (int a = 0; a < D; ++a) {
       f(momentum[a]);
@@ -103,7 +106,7 @@ struct PatchSums {
       f(prescribed.impulse[a]);
     }
   }
-  static constexpr std::size_t numbers = 37 + 3 * D;  // of for_each
+  static constexpr std::size_t numbers = 38 + 3 * D;  // of for_each
 };
 
 /// The sums over all patches of all ranks, which depend on no order.

@@ -177,8 +177,8 @@ void check_state(const Domain<D>& domain, Surfaces<D>& surfaces) {
     check(on.host < surfaces.hosts.size() && are_finite(on.push) && are_finite(on.rub));
   check(std::ranges::is_sorted(surfaces.on_bodies, {}, &ActingOnBody::body));
   for (const ActingOnBody& on : surfaces.on_bodies)
-    check(is_body(on.body) && is_finite(on.push) && is_finite(on.rub) &&
-          is_finite(on.moment_of_push) && is_finite(on.moment_of_rub));
+    for (const Wrench& by : {on.push, on.rub, on.restitution})
+      check(is_body(on.body) && is_finite(by.force) && is_finite(by.moment));
   for (const ActingBetween<D>& pair : surfaces.between)
     check(is_body(pair.a) &&
           (is_body(pair.b) ? pair.a < pair.b : pair.b >= opposite_wall(D - 1, 1)) &&

@@ -110,10 +110,10 @@ void move_to_centre(TurningSums& sums, Vector3& centre) {
 
 /// What acts on a body as a whole.
 template <int D>
-ActingOnBody acting_as_whole(const Domain<D>& domain, int body) {
+Wrench acting_as_whole(const Domain<D>& domain, int body) {
   const auto& all = domain.surfaces.on_bodies;
   const auto at = std::ranges::lower_bound(all, body, {}, &ActingOnBody::body);
-  return at != all.end() && at->body == body ? *at : ActingOnBody{};
+  return at != all.end() && at->body == body ? at->all() : Wrench{};
 }
 
 /// The angular acceleration that the nodes lack, and what the body has by the end of the step.
@@ -159,11 +159,10 @@ void turn_in_body(Domain<D>& domain) {
       domain, of_patch, [&](KeptSpin& turning, TurningSums sums, std::size_t first) {
         move_to_centre(sums, turning.centre);
         const auto patches = patches_of<D>(domain.grid.patches, turning.body);
-        const ActingOnBody as_whole = acting_as_whole(domain, turning.body);
-        const Vector3 force = as_whole.force();
-        const Vector3 alpha = lacking(domain, patches[0], sums,
-                                      as_whole.moment() - cross(turning.centre, force), turning);
-        const Vector3 straight = (1.0 / sums.motion.mass) * force;
+        const Wrench as_whole = acting_as_whole(domain, turning.body);
+        const Vector3 alpha =
+            lacking(domain, patches[0], sums, as_whole.moment_about(turning.centre), turning);
+        const Vector3 straight = (1.0 / sums.motion.mass) * as_whole.force;
         turning.velocity =
             (1.0 / sums.motion.mass) * sums.motion.momentum +
             time_of_forces(domain, patches[0]) *

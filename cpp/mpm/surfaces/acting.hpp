@@ -30,8 +30,7 @@ class Acting {
   void push(std::uint64_t order, std::uint32_t point, const Vec<double, D>& force) {
     const ContactPoint<D>& at = surfaces_.points[point];
     if (ActingOnBody* const body = body_of(order, at)) {
-      body->push += in_space<D>(force);
-      body->moment_of_push += cross(in_space<D>(surfaces_.places[point]), in_space<D>(force));
+      body->push.add(in_space<D>(force), in_space<D>(surfaces_.places[point]));
       return;
     }
     ActingOnHost<D>& host = on(at.host);
@@ -43,8 +42,7 @@ class Acting {
            const PlaceAtHost<D>& reach, const Vec<double, D>& place) {
     const ContactPoint<D>& at = surfaces_.points[point];
     if (ActingOnBody* const body = body_of(order, at)) {
-      body->rub += in_space<D>(force);
-      body->moment_of_rub += cross(in_space<D>(place), in_space<D>(force));
+      body->rub.add(in_space<D>(force), in_space<D>(place));
       return;
     }
     on(at.host).rub.add(force, reach);
@@ -75,8 +73,6 @@ class Acting {
       ActingOnBody& all = acting_on_body(surfaces_.on_bodies, one.on.body);
       all.push += one.on.push;
       all.rub += one.on.rub;
-      all.moment_of_push += one.on.moment_of_push;
-      all.moment_of_rub += one.on.moment_of_rub;
     }
   }
 

@@ -37,24 +37,26 @@ void add_work_as_one(Domain<D>& domain, bool at_end) {
   PatchSums<D>& sums = *counted;
   for (const ActingOnBody& on : domain.surfaces.on_bodies) {
     const RigidMotion motion = motion_as_one(domain, on.body);
-    const auto work = [&](const Vector3& force, const Vector3& moment) {
+    const auto work = [&](const Wrench& by) {
       return 0.5 * domain.time_step *
-             (dot(force, motion.velocity) + dot(moment - cross(motion.centre, force), motion.spin));
+             (dot(by.force, motion.velocity) + dot(by.moment_about(motion.centre), motion.spin));
     };
-    const double push = work(on.push, on.moment_of_push), rub = work(on.rub, on.moment_of_rub);
+    const double push = work(on.push), rub = work(on.rub), restitution = work(on.restitution);
+    const double all = push + rub + restitution;
     sums.surface_push += push;
     sums.surface_rub += rub;
+    sums.restitution += restitution;
     if (domain.body_at(on.body).is_prescribed()) {
-      sums.prescribed.work += push + rub;
+      sums.prescribed.work += all;
     } else if (domain.body_at(on.body).keeps_nodes()) {
-      sums.force_work -= push + rub;
-      sums.kept_shift += push + rub;
-      if (at_end) sums.kept_ahead += push + rub;
+      sums.force_work -= all;
+      sums.kept_shift += all;
+      if (at_end) sums.kept_ahead += all;
     } else {
       // It changes the particles' velocities at once, which counts as made_rigid.
-      sums.made_rigid += push + rub;
-      sums.transferred -= push + rub;
-      if (at_end) sums.kept_ahead += push + rub;
+      sums.made_rigid += all;
+      sums.transferred -= all;
+      if (at_end) sums.kept_ahead += all;
     }
   }
 }
@@ -65,17 +67,18 @@ void push_rigid_by_surfaces(Domain<D>& domain) {
   for (const ActingOnBody& on : domain.surfaces.on_bodies) {
     const Body<D>& body = domain.body_at(on.body);
     if (body.keeps_nodes()) continue;  // turn_in_body()
+    const Wrench all = on.all();
     if (body.is_prescribed()) {
       if (PatchSums<D>* const sums = sums_as_one(domain)) {
-        for (int a = 0; a < D; ++a) sums->prescribed.impulse[a] += acts * on.force()[a];
-        sums->angular.on_prescribed += acts * on.moment();
+        for (int a = 0; a < D; ++a) sums->prescribed.impulse[a] += acts * all.force[a];
+        sums->angular.on_prescribed += acts * all.moment;
       }
       continue;
     }
     const RigidMotion motion = motion_as_one(domain, on.body);
-    const Vector3 change = (acts / body.total_mass) * on.force();
-    const Vector3 spin = spin_of(
-        motion.inertia, acts * (on.moment() - cross(motion.centre, on.force())), motion.free_axes);
+    const Vector3 change = (acts / body.total_mass) * all.force;
+    const Vector3 spin =
+        spin_of(motion.inertia, acts * all.moment_about(motion.centre), motion.free_axes);
     ParticlePool<D>& pool = domain.pool_of(body);
     for (const Patch<D>& patch : patches_of<D>(domain.grid.patches, on.body))
       for (const std::uint32_t row : pool.rows(patch)) {

@@ -45,13 +45,12 @@ Vector3 velocity_at_place(const Domain<D>& domain, Opposite number, const Vector
   return is_wall(number) ? Vector3::zero() : motion_as_one(domain, number).velocity_at(place);
 }
 
-void add_at(std::vector<ActingOnBody>& all, int body, const Vector3& push, const Vector3& rub,
+/// `rub`: what friction of points has too much.
+void add_at(std::vector<ActingOnBody>& all, int body, const Vector3& taking, const Vector3& rub,
             const Vector3& place) {
   ActingOnBody& on = acting_on_body(all, body);
-  on.push += push;
-  on.rub += rub;
-  on.moment_of_push += cross(place, push);
-  on.moment_of_rub += cross(place, rub);
+  on.restitution.add(taking, place);
+  on.rub.add(rub, place);
 }
 
 /// What a face gives a body as a whole is told with what it gives its points.
@@ -94,18 +93,19 @@ void add_restitution(Domain<D>& domain) {
     const double most = std::max(law.friction * (push - taken) - rubbed, 0.0);
     const double drag =
         std::min(2.0 * beta * std::sqrt(pair.stiffness * mass), most_in_step * mass / dt) * swing;
-    Vector3 rub = swing > 0.0 ? (-std::min(drag, most) / swing) * along : Vector3::zero();
+    Vector3 taking = -taken * normal;
+    if (swing > 0.0) taking -= (std::min(drag, most) / swing) * along;
     // Friction of points is bounded by what was left in the step before: what it is more by now.
     // What bonds pull is no friction.
     const double allowed = law.friction * pair.size * (1.0 - taken / push);
+    Vector3 rub = Vector3::zero();
     if (!law.bonded && rubbed > allowed)
-      rub -= (1.0 - allowed / rubbed) * in_space<D>(pair.on_first - pair.push);
-    const Vector3 back = -taken * normal;
+      rub = -(1.0 - allowed / rubbed) * in_space<D>(pair.on_first - pair.push);
     pair.left = 1.0 - taken / push;
-    for (int a = 0; a < D; ++a) pair.on_first[a] += back[a] + rub[a];
-    if (is_wall(pair.b)) add_by_wall(surfaces, pair, back + rub, place);
-    add_at(surfaces.on_bodies, pair.a, back, rub, place);
-    if (!is_wall(pair.b)) add_at(surfaces.on_bodies, pair.b, -1.0 * back, -1.0 * rub, place);
+    for (int a = 0; a < D; ++a) pair.on_first[a] += taking[a] + rub[a];
+    if (is_wall(pair.b)) add_by_wall(surfaces, pair, taking + rub, place);
+    add_at(surfaces.on_bodies, pair.a, taking, rub, place);
+    if (!is_wall(pair.b)) add_at(surfaces.on_bodies, pair.b, -1.0 * taking, -1.0 * rub, place);
   }
 }
 

@@ -19,7 +19,7 @@
 
 #include "mpm/layout/tile.hpp"
 #include "mpm/math/tensor.hpp"
-#include "mpm/rigid/rigid_motion.hpp"
+#include "mpm/surfaces/acting_on_bodies.hpp"
 #include "mpm/surfaces/other_ranks.hpp"
 #include "mpm/walls/face_impulses.hpp"
 
@@ -143,45 +143,6 @@ struct Bond {
   int from = 0, body = 0;               // whose they are
   double stiffness = 0.0;               // [N/m]
   Vec<double, D> pull;                  // on the first, after the last step [N]
-};
-
-/// What passes between two bodies in the coming step.
-template <int D>
-struct ActingBetween {
-  int a = 0, b = 0;                                  // a < b
-  Vec<double, D> on_first = Vec<double, D>::zero();  // [N]
-  double rub_work = 0.0;                             // taken by friction in the step before [J]
-  // Of the springs the normal force on the first, the sum of the sizes, and of places times these.
-  Vec<double, D> push = Vec<double, D>::zero(), middle = Vec<double, D>::zero();  // [N]; [N m]
-  double size = 0.0, stiffness = 0.0;                                             // [N]; [N/m]
-  double left =
-      1.0;  // of the normal force, what the bodies feel: less as they part (restitution.hpp)
-  // Of the deepest overlap: it, the unit vector from a to b, and where.
-  double overlap = -std::numeric_limits<double>::infinity();
-  Vec<double, D> normal = Vec<double, D>::zero(), place = Vec<double, D>::zero();
-};
-
-/// What acts on a body as a whole in the coming step: on one that does not deform all of it, on
-/// others what takes the energy of restitution.
-struct ActingOnBody {
-  int body = 0;
-  Vector3 push = Vector3::zero(), rub = Vector3::zero();  // by springs, by friction [N]
-  // Of the two, about the origin [N m].
-  Vector3 moment_of_push = Vector3::zero(), moment_of_rub = Vector3::zero();
-
-  Vector3 force() const { return push + rub; }
-  Vector3 moment() const { return moment_of_push + moment_of_rub; }
-};
-
-/// The two by one part, with its place in the order of all; behind all parts by its bonds.
-template <int D>
-struct BetweenByPart {
-  std::uint64_t place = 0, entry = 0;  // `entry`: of those of a rank
-  ActingBetween<D> pair;
-};
-struct OnBodyByPart {
-  std::uint64_t place = 0;
-  ActingOnBody on;
 };
 
 /// The points whose hosts lie in one tile of a body, which one thread takes; of a body that does

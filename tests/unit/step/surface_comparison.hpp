@@ -220,9 +220,9 @@ class SurfaceComparison {
       const auto at =
           std::ranges::lower_bound(fast.on_bodies, static_cast<int>(b), {}, &ActingOnBody::body);
       const bool acts = at != fast.on_bodies.end() && std::cmp_equal(at->body, b);
-      const ActingOnBody on = acts ? *at : ActingOnBody{};
-      forces.add(on.force(), twin_.surfaces.bodies[b].force);
-      moments.add(on.moment(), twin_.surfaces.bodies[b].moment);
+      const Wrench all = acts ? at->all() : Wrench{};
+      forces.add(all.force, twin_.surfaces.bodies[b].force);
+      moments.add(all.moment, twin_.surfaces.bodies[b].moment);
     }
     check(forces, least_force());
     check(moments, cell * least_force());
