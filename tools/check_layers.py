@@ -31,6 +31,7 @@ LAYERS = {
     "followers/node_table.hpp": 5,
     "followers/followers.hpp": 6,
     "surfaces/hosts.hpp": 3,
+    "surfaces/acting_on_bodies.hpp": 4,
     "surfaces/other_ranks.hpp": 4,
     "surfaces/surfaces.hpp": 5,
     "particles": 5,
