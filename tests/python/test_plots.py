@@ -13,7 +13,7 @@ import pytest
 from fake_core import COLUMNS, SIZE, FakeSimulation
 from mpm3dpp import open_results, plots
 from mpm3dpp.base.errors import CaseError
-from mpm3dpp.io import HistoryWriter, ResultsWriter, build_manifest
+from mpm3dpp.io import HistoryWriter, ResultsWriter, build_manifest, read_history
 from mpm3dpp.plots import energies, flat, frames, labels, paint, raster, space
 
 
@@ -225,15 +225,26 @@ def test_few_balls_are_drawn_as_many_are(monkeypatch: pytest.MonkeyPatch) -> Non
     assert np.isclose(few[1], many[1]).mean() > 0.9
 
 
+def test_a_run_of_an_older_version_has_pictures(tmp_path: Path) -> None:
+    """Its table has fewer terms: what restitution has taken is in `contact`."""
+    path = make_run(tmp_path) / "history.csv"
+    header, *rows = [line.split(",") for line in path.read_text().splitlines()]
+    k = header.index("restitution")
+    without = [[*row[:k], *row[k + 1 :]] for row in (header, *rows)]
+    path.write_text("\n".join(",".join(row) for row in without) + "\n")
+    assert not read_history(path)["restitution"].any()
+    assert pixels(energies.save_energies(read_history(path), tmp_path / "energies.png")).size
+
+
 def test_the_total_misses_what_numerics_took() -> None:
     rng = np.random.default_rng(1)
     history = {name: rng.uniform(1.0, 2.0, 9) for name in COLUMNS}
     gone_to = ("plastic", "viscous", "friction", "contact", "springs", "absorbed", "damped")
-    gone_to += ("bounded", "eroded", "left", "numerical")
+    gone_to += ("bounded", "eroded", "left", "numerical", "restitution")
     gone = sum(history[name] for name in gone_to)
     history["kinetic"] = 100.0 - gone - history["internal"] + history["external"]
     figure = energies.draw_energies(history)  # Of more curves than there are colours.
-    assert len(figure.axes[0].lines) == 14 and len(figure.axes[1].lines) == 15
+    assert len(figure.axes[0].lines) == 15 and len(figure.axes[1].lines) == 16
     [total] = [line for line in figure.axes[0].lines if line.get_label() == "total"]
     expected = 100.0 - history["contact"] - history["numerical"]
     assert np.allclose(total.get_ydata(), expected, rtol=1e-14)

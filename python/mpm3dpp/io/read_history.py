@@ -15,7 +15,10 @@ from mpm3dpp.base.errors import CaseError
 from .history import ENERGIES, MOMENTUM, PAIRS
 from .table import check_table, whole_lines
 
-_NEEDED = ("time", "step", "dt", *ENERGIES, *MOMENTUM)  # By summaries and pictures.
+_LATER = ("restitution",)  # Tables of older versions have it in another column.
+_NEEDED = tuple(  # By summaries and pictures.
+    name for name in ("time", "step", "dt", *ENERGIES, *MOMENTUM) if name not in _LATER
+)
 
 
 def has_no_history(folder: Path) -> bool:
@@ -38,7 +41,7 @@ def check_history(folder: Path, state: Mapping[str, Any]) -> None:
 def read_history(path: str | Path) -> dict[str, np.ndarray]:
     """The table as column name -> array (rows,), float64; empty cells are NaN.
 
-    A last row that a killed run left unfinished is dropped.
+    Terms of the ledger that an older version did not have are 0. A last row that a killed run left unfinished is dropped.
 
     Args:
         path: `history.csv` or the output folder that holds it.
@@ -75,4 +78,5 @@ def read_history(path: str | Path) -> dict[str, np.ndarray]:
         if len(wrong):
             rule = f"'{path}' is damaged: line {wrong[0] + 2} has no number for {name}"
             raise CaseError(rule, "take the line out, or run the case again")
-    return {name: columns[:, k] for k, name in enumerate(header)}
+    history = {name: columns[:, k] for k, name in enumerate(header)}
+    return {name: np.zeros(len(columns)) for name in _LATER if name not in header} | history
