@@ -13,7 +13,8 @@ from mpm3dpp import _core
 
 COLUMNS = (
     *("step", "time", "dt", "kinetic", "internal", "plastic", "viscous", "friction"),
-    *("restitution", "contact", "springs", "external", "absorbed", "damped", "eroded", "left", "bounded"),
+    *("restitution", "contact", "springs", "external", "absorbed", "damped"),
+    *("eroded", "left", "bounded"),
     *("numerical", "residual"),
     *("momentum_x", "momentum_y", "momentum_z"),
     *("numerical_mapping", "numerical_time"),

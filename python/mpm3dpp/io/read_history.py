@@ -41,7 +41,8 @@ def check_history(folder: Path, state: Mapping[str, Any]) -> None:
 def read_history(path: str | Path) -> dict[str, np.ndarray]:
     """The table as column name -> array (rows,), float64; empty cells are NaN.
 
-    Terms of the ledger that an older version did not have are 0. A last row that a killed run left unfinished is dropped.
+    Terms of the ledger that an older version did not have are 0. A last row that a killed run left
+    unfinished is dropped.
 
     Args:
         path: `history.csv` or the output folder that holds it.
