@@ -26,8 +26,8 @@ UNSTABLE = CASE.replace('cell_size = "10 mm"', 'cell_size = "10 mm"\nbasis = "li
     "cfl = 0.3", 'cfl = 0.5\nscheme = "usl"'
 )
 FIRST = (
-    "step,time,dt,kinetic,internal,plastic,viscous,friction,contact,springs,external,absorbed,"
-    "damped,eroded,left,bounded,numerical,residual,momentum_x,momentum_y,momentum_z"
+    "step,time,dt,kinetic,internal,plastic,viscous,friction,restitution,contact,springs,external,"
+    "absorbed,damped,eroded,left,bounded,numerical,residual,momentum_x,momentum_y,momentum_z"
 )
 KEYS = (
     *("version", "case_hash", "mass", "cell_size", "particles", "threads", "steps", "wall_time"),
