@@ -57,11 +57,12 @@ struct Domain {
   double short_wave_damping = 0.0;  // of bodies on nodes of their own [c / h]
   std::int64_t filter_every = 1;    // ... in each step whose number this divides
 
-  double time = 0.0;         // [s]
-  double time_after = 0.0;   // of the step being made [s]
-  double time_step = 0.0;    // of the step being made [s]
-  double step_before = 0.0;  // the one before [s]; 0 in the first
-  std::int64_t step = 0;     // steps made
+  double time = 0.0;          // [s]
+  double time_after = 0.0;    // of the step being made [s]
+  double time_step = 0.0;     // of the step being made [s]
+  double step_before = 0.0;   // the one before [s]; 0 in the first
+  std::int64_t step = 0;      // steps made
+  std::int64_t renewals = 0;  // of nodes of all bodies (run/renew_reference.hpp)
 
   std::vector<PatchSums<D>> sums;  // one per patch; with a device those of its bodies, and others
   std::vector<NodeWork> work_of_nodes;  // scratch: of each patch

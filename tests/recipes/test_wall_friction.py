@@ -223,6 +223,7 @@ def test_one_number_is_of_all_faces_that_touch() -> None:
         ("friction = -0.1", "grid.box.friction.y_min"),
         ('friction = "much"', "grid.box.friction.y_min"),
         ("friction = { x_max = 0.2 }", "is of a face that is free"),
+        ("friction = { z_min = 0.2 }", "is of a face that is not there"),
         ("friction = { top = 0.2 }", "is not a known key"),
         ('friction = 0.3\nwalls = "fixed"', "needs a face of grid.box.walls that is contact"),
         ('friction = 0.3\nwalls = "slipp"', 'did you mean "slip"'),

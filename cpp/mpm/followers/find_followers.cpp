@@ -67,7 +67,7 @@ void add_filled(const Domain<D>& domain, const Patch<D>& patch, std::vector<OfNo
 
 /// Of all bodies of all ranks, by node.
 template <int D>
-std::vector<Follower<D>> all_followers(Domain<D>& domain, bool at_start) {
+std::vector<Follower<D>> all_followers(Domain<D>& domain, const std::vector<bool>& laid) {
   TileGrid<D>& grid = domain.grid;
   std::vector<OfNode<D>> cells, masses;
   for (const Patch<D>& patch : grid.patches) {
@@ -87,7 +87,7 @@ std::vector<Follower<D>> all_followers(Domain<D>& domain, bool at_start) {
     const int number = masses[begin].node.body;
     const auto nodes = std::ranges::equal_range(masses, number, {}, body_of);
     const auto filled = std::ranges::equal_range(cells, number, {}, body_of);
-    add_followers<D>(grid.walls, filled, nodes, at_start, all);
+    add_followers<D>(grid.walls, filled, nodes, laid[static_cast<std::size_t>(number)], all);
     begin += nodes.size();
   }
   return all;
@@ -190,9 +190,11 @@ void make_sums(const TileGrid<D>& grid, const PatchesOfNodes<D>& patches,
 
 /// Masses of those who follow go to those who lead, (E2).
 template <int D>
-void give_masses(TileGrid<D>& grid, const std::vector<Follower<D>>& all) {
+void give_masses(TileGrid<D>& grid, const std::vector<Follower<D>>& all,
+                 const std::vector<bool>& laid) {
   std::vector<OfNode<D>> given;
   for (const Follower<D>& one : all) {
+    if (!laid[static_cast<std::size_t>(one.node.body)]) continue;
     given.push_back({one.node, -one.mass});
     for (const Leader<D>& leader : one.leaders)
       given.push_back({{one.node.body, leader.node}, leader.share * one.mass});
@@ -213,9 +215,9 @@ void give_masses(TileGrid<D>& grid, const std::vector<Follower<D>>& all) {
 }  // namespace
 
 template <int D>
-void find_followers(Domain<D>& domain, bool at_start) {
+void find_followers(Domain<D>& domain, const std::vector<bool>& laid) {
   domain.followers = {};
-  const std::vector<Follower<D>> all = all_followers(domain, at_start);
+  const std::vector<Follower<D>> all = all_followers(domain, laid);
   if (all.empty()) return;  // alike on all ranks
   domain.followers.exist = true;
   Followers<D>& made = domain.followers;
@@ -224,10 +226,10 @@ void find_followers(Domain<D>& domain, bool at_start) {
       made.patches.all.push_back({patch.body, patch.tile, p});
   make_sums(domain.grid, made.patches, parts_of(all, true), made.given, &made.beyond);
   make_sums<D>(domain.grid, made.patches, parts_of(all, false), made.taken, nullptr);
-  if (at_start) give_masses(domain.grid, all);
+  give_masses(domain.grid, all, laid);
 }
 
-template void find_followers<2>(Domain<2>&, bool);
-template void find_followers<3>(Domain<3>&, bool);
+template void find_followers<2>(Domain<2>&, const std::vector<bool>&);
+template void find_followers<3>(Domain<3>&, const std::vector<bool>&);
 
 }  // namespace mpm

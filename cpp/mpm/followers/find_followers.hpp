@@ -4,8 +4,9 @@
 namespace mpm {
 
 /// Who follows whom of the nodes that bodies keep, (E1) of followers.hpp, once these have masses;
-/// at the start those who lead get what followers have, (E2). All ranks together.
+/// of bodies whose nodes are `laid` anew those who lead get what followers have, (E2). All ranks
+/// together.
 template <int D>
-void find_followers(Domain<D>& domain, bool at_start);
+void find_followers(Domain<D>& domain, const std::vector<bool>& laid);
 
 }  // namespace mpm

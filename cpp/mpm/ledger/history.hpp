@@ -11,6 +11,7 @@ struct StepState {
   std::int64_t step;
   double time, time_step, cell_size;
   std::size_t tiles;
+  std::int64_t renewals;
 };
 
 /// How a column enters the balance of the ledger.
@@ -83,7 +84,8 @@ inline constexpr auto history_terms = std::to_array<HistoryTerm>({
     {"numerical_time", "J", "its other part, of the integration in time",
      [](const StepState& s) { return s.ledger.time_integration; }, Role::other, "numerical"},
     {"numerical_transfer", "J",
-     "its part that transfers other than FLIP have taken: what they smooth away",
+     "its part that transfers other than FLIP have taken, or nodes that were laid anew: what they "
+     "smooth away",
      [](const StepState& s) { return s.ledger.transferred; }, Role::other, "numerical"},
     {"load_work", "J", "the part of `external` that loads on surfaces and body forces have done",
      [](const StepState& s) { return s.ledger.load_work; }, Role::other, "external"},
@@ -97,6 +99,9 @@ inline constexpr auto history_terms = std::to_array<HistoryTerm>({
     {"tiles", "1",
      "tiles of 4 x 4 x 4 cells (8 x 8 in 2D) that hold particles, those of each body counted",
      [](const StepState& s) { return static_cast<double>(s.tiles); }},
+    {"renewals", "1",
+     "how often nodes have been laid anew into bodies on nodes of their own that flow",
+     [](const StepState& s) { return static_cast<double>(s.renewals); }},
     {"motion_work", "J", "the part of `external` that prescribed motions have done",
      [](const StepState& s) { return s.ledger.motion_work; }, Role::other, "external"},
     {"motion_impulse_x", "N s", "impulse that prescribed motions have given",

@@ -127,6 +127,13 @@ ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid,
   if (transfer.reference) {
     pool.reference = pool.columns.add("reference_position", "m", D);
     pool.deformation = pool.columns.add("deformation_gradient", "1", D * D);
+    const std::vector<ColumnInfo>& known = pool.columns.infos();
+    const auto flowed = std::ranges::find(known, "plastic_strain", &ColumnInfo::name);
+    if (flowed != known.end()) {
+      pool.flowed = flowed->first;
+      pool.flowed_before = pool.columns.add("flowed_before", "1", 1);
+      pool.stretched_before = pool.columns.add("stretched_before", "1", 1);
+    }
   }
   if (transfer.affine) {
     pool.affine = pool.columns.add("affine_velocity", "1/s", D * D, Precision::rounded);
@@ -248,6 +255,12 @@ void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>
       });
     bodies[b].given.reset();
   }
+  for (ParticlePool<D>& pool : pools)
+    if (pool.flowed_before >= 0) {
+      std::copy_n(pool.columns.component(pool.flowed), pool.count(),
+                  pool.columns.component(pool.flowed_before));
+      std::fill_n(pool.columns.component(pool.stretched_before), pool.count(), 1.0);
+    }
 }
 
 template ParticlePool<2> make_pool<2>(const Material&, const TileGrid<2>&, const TransferColumns&);

@@ -56,7 +56,8 @@ void find_migrants(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
 
 /// Put new patches, sorted, among the others.
 template <int D>
-void merge(std::vector<Patch<D>>& patches, const std::vector<std::pair<int, Index<D>>>& added) {
+void merge(std::vector<Patch<D>>& patches, const std::vector<Body<D>>& bodies,
+           const std::vector<std::pair<int, Index<D>>>& added) {
   // From the end, in place: nothing is written over that has not been moved yet.
   std::size_t from = patches.size(), to = from + added.size(), next = added.size();
   patches.resize(to);
@@ -67,6 +68,7 @@ void merge(std::vector<Patch<D>>& patches, const std::vector<std::pair<int, Inde
     } else {
       Patch<D>& patch = patches[--to] = {};
       patch.body = body;
+      patch.keeps = bodies[static_cast<std::size_t>(body)].keeps_nodes();
       patch.tile = tile;
       --next;
     }
@@ -76,7 +78,7 @@ void merge(std::vector<Patch<D>>& patches, const std::vector<std::pair<int, Inde
 /// Add patches for tiles that a body enters, and drop the empty ones; true if the set of patches
 /// has changed.
 template <int D>
-bool add_patches(TileGrid<D>& grid, ListScratch<D>& scratch) {
+bool add_patches(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, ListScratch<D>& scratch) {
   auto& patches = grid.patches;
   auto& entered = scratch.entered;
   auto& number = scratch.number;
@@ -102,7 +104,7 @@ bool add_patches(TileGrid<D>& grid, ListScratch<D>& scratch) {
   });
   entered.erase(std::unique(entered.begin(), entered.end()), entered.end());
   std::erase_if(patches, is_empty);
-  merge<D>(patches, entered);
+  merge<D>(patches, bodies, entered);
   // The others have kept their order, and the new ones are still empty.
   std::size_t next = 0;
   for (std::int32_t& n : number) {
@@ -196,7 +198,7 @@ bool migrate_particles(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                        ListScratch<D>& scratch) {
   find_migrants(grid, bodies, pools, threads, scratch);
   if (!grid.partition.alone()) exchange_migrants(grid, bodies, pools, scratch);
-  const bool changed = add_patches(grid, scratch);
+  const bool changed = add_patches(grid, bodies, scratch);
   find_changes(grid, scratch);
   find_ranges(bodies, pools, scratch);
   return changed;

@@ -9,6 +9,7 @@
 #include "mpm/run/coarsen_cells.hpp"
 #include "mpm/run/find_failure.hpp"
 #include "mpm/run/measures.hpp"
+#include "mpm/run/renew_reference.hpp"
 #include "mpm/run/settle.hpp"
 #include "mpm/run/time_step.hpp"
 #include "mpm/run/use_device.hpp"
@@ -96,6 +97,7 @@ std::int64_t advance(Simulation<D>& simulation, std::int64_t max_steps, double e
   const auto begin = std::chrono::steady_clock::now();
   std::int64_t made = 0;
   while (made < max_steps && domain.time < end_time && !simulation.failure) {
+    renew_references(simulation);
     const double next_stop = domain.settles() ? std::min(end_time, 0.0) : end_time;
     const double left = next_stop - domain.time;
     const double step = step_towards(simulation, left);

@@ -12,7 +12,8 @@ namespace mpm {
 template <int D>
 StepState step_state(const Domain<D>& domain) {
   return {domain.ledger,    domain.step,           domain.time,
-          domain.time_step, domain.grid.cell_size, all_patches(domain.grid)};
+          domain.time_step, domain.grid.cell_size, all_patches(domain.grid),
+          domain.renewals};
 }
 
 /// Room is made once, for the row of the start and `capacity` steps; a caller who never takes them

@@ -103,10 +103,10 @@ std::size_t bytes_of_surfaces(const Surfaces<D>& surfaces) {
          bytes_of(surfaces.moving) + bytes_of(surfaces.between_parts) +
          bytes_of(surfaces.on_bodies_by_part) + bytes_of(surfaces.F_on_hosts) +
          bytes_of(surfaces.others.hosts) + bytes_of(surfaces.others.places_at_start) +
-         bytes_of(surfaces.set_back) + bytes_of(surfaces.places_of_lists) +
-         bytes_of(surfaces.in_touch) + bytes_of(surfaces.place_of_motion) +
-         bytes_of(surfaces.between) + bytes_of(surfaces.on_hosts) +
-         bytes_of(surfaces.place_on_hosts);
+         bytes_of(surfaces.first_numbers) + bytes_of(surfaces.set_back) +
+         bytes_of(surfaces.places_of_lists) + bytes_of(surfaces.in_touch) +
+         bytes_of(surfaces.place_of_motion) + bytes_of(surfaces.between) +
+         bytes_of(surfaces.on_hosts) + bytes_of(surfaces.place_on_hosts);
 }
 
 }  // namespace

@@ -24,12 +24,13 @@ enum class NoteKind {
   gas_volume,
   sparse,
   sparse_gas,
-  deep
+  deep,
+  nodes_kept
 };
-inline constexpr std::array note_names = {"time step",        "energy of a step", "load",
-                                          "outside walls",    "volume",           "left box",
-                                          "crowded node",     "unsettled",        "gas volume",
-                                          "sparse particles", "sparse gas",       "deep surface"};
+inline constexpr std::array note_names = {
+    "time step",  "energy of a step", "load",      "outside walls", "volume",
+    "left box",   "crowded node",     "unsettled", "gas volume",    "sparse particles",
+    "sparse gas", "deep surface",     "nodes kept"};
 
 /// Told once for each kind and body (the first of its group), then counted. Trivially copyable, so
 /// that a checkpoint holds it.

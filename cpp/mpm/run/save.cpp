@@ -20,7 +20,7 @@ constexpr std::int64_t format = 24;  // raised whenever exchange() or what a val
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {
   stream.same(body.count, other_case);
-  stream(body.leaves, body.removed);
+  stream(body.leaves, body.removed, body.renewals, body.keeps_its_nodes);
   if (body.is_prescribed()) stream(body.motion->before, body.motion->now);
 }
 
@@ -98,7 +98,8 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
   for (SurfaceLoad<D>& load : domain.loads) stream(load.mean, load.force, load.impulse);
   if (stream.restores()) rebuild(domain, std::move(bodies), stream);
   exchange_kept_nodes(domain, stream);
-  if (stream.restores() && has_kept_nodes(domain)) find_followers(domain, false);
+  if (stream.restores() && has_kept_nodes(domain))
+    find_followers(domain, std::vector<bool>(domain.bodies.size(), false));
   exchange_kept_spins(domain, stream);
   exchange_surfaces(domain, stream);
   if (domain.surfaces.meet) {
@@ -108,7 +109,8 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
   }
   if (domain.has_contact())
     exchange_contact(domain.contact, stream, domain.bodies.size(), domain.grid.partition);
-  stream(domain.time, domain.time_step, domain.step_before, domain.step, domain.gravity);
+  stream(domain.time, domain.time_step, domain.step_before, domain.step, domain.renewals,
+         domain.gravity);
   exchange_removed(stream, domain.eroded);
   exchange_removed(stream, domain.outflow);
   for (PartEnergies& part : domain.part_energies) exchange_sums(stream, part.sums);

@@ -44,6 +44,10 @@ struct Places {
     std::ranges::sort(rows, {}, &PlacedRow::place);
   }
 
+  std::size_t body_at(std::size_t place) const {
+    return static_cast<std::size_t>(std::ranges::upper_bound(first, place) - first.begin()) - 1;
+  }
+
   /// A number of each particle: get(row) here, set(row, number) when it is restored.
   template <class Number, class Get, class Set>
   void exchange(StateStream& stream, Get&& get, Set&& set) const {
@@ -121,12 +125,14 @@ void exchange_particles(Domain<D>& domain, std::size_t m, StateStream& stream,
   const Places<D> places(domain, m);
   stream.same(places.count, "it was made from another case");
   stream.same(pool.columns.component_count(), "it was made from another case");
+  // Of bodies into which nodes were laid anew these are not those of the case.
   const auto places_in_body = [&] {
     std::vector<double> found;
-    for (int a = 0; pool.reference >= 0 && a < D; ++a) {
-      const double* const X = pool.columns.component(pool.reference + a);
-      for (const PlacedRow& one : places.rows) found.push_back(X[one.row]);
-    }
+    if (pool.reference < 0) return found;
+    for (const PlacedRow& one : places.rows)
+      if (domain.bodies[places.body_at(one.place)].renewals == 0)
+        for (int a = 0; a < D; ++a)
+          found.push_back(pool.columns.component(pool.reference + a)[one.row]);
     return found;
   };
   const std::vector<double> before = stream.restores() ? places_in_body() : std::vector<double>{};

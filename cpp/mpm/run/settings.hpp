@@ -132,6 +132,7 @@ struct RunSettings {
   std::array<TimeFunction, 3> gravity{};
   TransferSettings transfer;
   double short_wave_damping = 0.0;
+  double renewal_strain = 0.69;
   std::optional<SettleSettings> settle;
   double energy_growth_limit = 1.0;
   double outside_limit = 0.05;
@@ -160,6 +161,11 @@ struct RunSettings {
               "bodies on nodes of their own lose what their particles do not see of the nodes' "
               "velocities at this rate, over the wave speed and the cells' size; 0 for never",
               Rule::not_negative},
+      Setting{
+          "renewal_strain", &Self::renewal_strain,
+          "bodies on nodes of their own get these anew once one particle in a hundred has flowed "
+          "by this plastic strain since the last time; 0 for never",
+          Rule::not_negative},
       Setting{"energy_growth_limit", &Self::energy_growth_limit,
               "the run stops when the numerical error has created this share of the largest energy "
               "seen",

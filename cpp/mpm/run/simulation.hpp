@@ -51,7 +51,8 @@ struct Simulation {
   double least_stable = 0.0;  // [s]
   int coarsenings = 0;        // of the cells so far
   Phase phase = Phase::building;
-  std::vector<HeldBody> held;  // until the run has settled
+  std::vector<HeldBody> held;        // until the run has settled
+  std::vector<std::int64_t> flowed;  // scratch: of each body (renew_reference.hpp)
   std::optional<Failure> failure;
   Watch<D> watch;
   double pressed_further = 0.0;         // in this step, of all that bodies are pressed (settle.hpp)

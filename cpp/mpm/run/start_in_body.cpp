@@ -196,19 +196,25 @@ void check_in_body(const Simulation<D>& simulation) {
 }
 
 template <int D>
-void start_in_body(Domain<D>& domain) {
-  if (!has_kept_nodes(domain)) return;
+void lay_nodes(Domain<D>& domain, const std::vector<bool>& bodies) {
   std::fill_n(domain.grid.kept.numbers.data(), domain.grid.kept.needed, 0.0);
   domain.followers = {};
-  give_to_nodes(domain, {});
-  for_each_meant(domain, {}, [&](std::size_t p) {
+  give_to_nodes(domain, bodies);
+  for_each_meant(domain, bodies, [&](std::size_t p) {
     const NodeBlock<D> block = domain.grid.block(p);
     for (int n = 0; n < block.count; ++n) {
       block.records[n][mass_at] = block.records[n][given_mass];
       std::fill_n(block.records[n] + half_record, half_record, 0.0);  // no increments
     }
   });
-  find_followers(domain, true);
+}
+
+template <int D>
+void start_in_body(Domain<D>& domain) {
+  if (!has_kept_nodes(domain)) return;
+  const std::vector<bool> all(domain.bodies.size(), true);
+  lay_nodes(domain, all);
+  find_followers(domain, all);
   list_kept_spins(domain);
   find_kept_velocities(domain);
   start_average_in_body(domain);
@@ -282,6 +288,8 @@ template void check_in_body<2>(const Simulation<2>&);
 template void check_in_body<3>(const Simulation<3>&);
 template void start_in_body<2>(Domain<2>&);
 template void start_in_body<3>(Domain<3>&);
+template void lay_nodes<2>(Domain<2>&, const std::vector<bool>&);
+template void lay_nodes<3>(Domain<3>&, const std::vector<bool>&);
 template void find_kept_velocities<2>(Domain<2>&, const std::vector<bool>&);
 template void find_kept_velocities<3>(Domain<3>&, const std::vector<bool>&);
 template void stop_kept_nodes<2>(Domain<2>&);

@@ -13,6 +13,11 @@ void check_in_body(const Material& material);
 template <int D>
 void check_in_body(const Simulation<D>& simulation);
 
+/// The masses of the nodes that are new to some bodies; all nodes are cleared. Who follows is not
+/// known yet.
+template <int D>
+void lay_nodes(Domain<D>& domain, const std::vector<bool>& bodies);
+
 /// The masses of the nodes, which have their places and the velocities of the particles; once lists
 /// are made.
 template <int D>

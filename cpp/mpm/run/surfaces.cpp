@@ -11,6 +11,7 @@
 #include "mpm/surfaces/overlaps.hpp"
 #include "mpm/surfaces/parts.hpp"
 #include "mpm/surfaces/press.hpp"
+#include "mpm/surfaces/renew_points.hpp"
 
 namespace mpm {
 
@@ -195,6 +196,31 @@ void check_state(const Domain<D>& domain, Surfaces<D>& surfaces) {
   }
 }
 
+/// Where nodes were laid anew into bodies points are not as the case has them.
+template <int D>
+void exchange_points(Domain<D>& domain, StateStream& stream) {
+  const auto is_renewed = [](const Body<D>& body) { return body.renewals > 0; };
+  if (std::ranges::none_of(domain.bodies, is_renewed)) return;
+  const Surfaces<D>& surfaces = domain.surfaces;
+  std::vector<LaidPoint<D>> points;
+  if (!stream.restores())
+    points = laid_points(domain, std::vector<bool>(domain.bodies.size(), false));
+  stream.vector(points);
+  if (!stream.restores()) return;
+  StateStream::check(points.size() == surfaces.points.size(), damaged);
+  for (std::uint32_t k = 0; k < points.size(); ++k) {
+    const auto& [given, place, at_start] = points[k];
+    bool fine = given.number == k && given.body == part_of_point(surfaces, k).body &&
+                given.particle < domain.body_at(given.body).count && given.face >= 0;
+    for (const Vec<double, D>& v : {given.offset, given.normal, place, at_start})
+      fine = fine && is_finite(v);
+    for (const double area : {given.area, given.felt_area})
+      fine = fine && area >= 0.0 && std::isfinite(area);
+    StateStream::check(fine, damaged);
+  }
+  lay_points(domain, points);
+}
+
 /// All of it, as one rank has it.
 template <int D>
 void exchange_state(const Domain<D>& domain, Surfaces<D>& surfaces, StateStream& stream) {
@@ -235,6 +261,7 @@ void exchange_surfaces(Domain<D>& domain, StateStream& stream) {
   Surfaces<D>& surfaces = domain.surfaces;
   stream.same(surfaces.points.size(), "it was made from another case");
   if (!surfaces.exist()) return;
+  exchange_points(domain, stream);
   if (!stream.restores()) {
     if (stream.comm().alone()) {
       exchange_state(domain, surfaces, stream);

@@ -10,7 +10,11 @@ namespace {
 constexpr std::array face_names = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
 constexpr const char* crushed = "give smaller steps or cells, or a stiffer material";
 
-const char* remedy_for_torn(bool loaded) {
+/// `keeps`: it is a body on nodes of its own, which cannot break.
+const char* remedy_for_torn(bool loaded, bool keeps) {
+  if (keeps && !loaded)
+    return "a body that keeps together may have been hit too fast or pressed too far: give "
+           "artificial viscosity, lower run.cfl, or give frame = \"updated\", where it may break";
   return loaded
              ? "a load may have torn off a part of the surface: lower it, let it rise slowly, or "
                "give smaller cells"
@@ -68,11 +72,11 @@ std::string deep_in_another(const std::string& whose, double share) {
 }
 
 /// What is so, and what can be done. `whose`: the body, or all of its entry.
-std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded) {
+std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded, bool keeps) {
   std::ostringstream text;
   text.precision(4);
   const double per_cent = 100.0 * n.share;
-  const char* const torn = remedy_for_torn(loaded);
+  const char* const torn = remedy_for_torn(loaded, keeps);
   switch (n.kind) {
     case NoteKind::time_step:
       text << "the time step has fallen to " << n.value << " s, less than a tenth of " << n.against
@@ -113,6 +117,11 @@ std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded
     case NoteKind::deep:
       text << deep_in_another(whose, n.value);
       break;
+    case NoteKind::nodes_kept:
+      text << whose << " has flowed far, and its nodes are not laid anew into it, as " << per_cent
+           << " % of its particles would be more than 1.5 cells apart: its steps get shorter, its "
+              "answers no worse; for longer steps give it more particles_per_cell";
+      break;
     case NoteKind::unsettled:
       text << "run.settle.longest was over before forces balanced: those out of balance were "
            << n.value << " of those applied, more than run.settle.ratio = " << n.against
@@ -151,13 +160,15 @@ std::vector<Warning> warnings(const Simulation<D>& simulation) {
     w.position = n.position;
     w.share = n.share;
     w.count = n.count;
-    w.is_error = n.kind != NoteKind::left_box;
+    w.is_error = n.kind != NoteKind::left_box && n.kind != NoteKind::nodes_kept;
     const bool loaded =
         std::ranges::any_of(domain.loads, [&](const auto& load) { return load.body == n.body; });
     std::ostringstream text;
     text.precision(4);
-    text << what_and_remedy(n, group_name(domain, n.group), loaded) << " (";
-    if (n.kind != NoteKind::unsettled) {  // which is of no place
+    text << what_and_remedy(n, group_name(domain, n.group), loaded,
+                            domain.body_at(n.body).keeps_nodes())
+         << " (";
+    if (n.kind != NoteKind::unsettled && n.kind != NoteKind::nodes_kept) {  // of no place
       text << "body \"" << domain.body_at(n.body).name << "\", ";
       if (n.particle >= 0) text << "particle " << n.particle << ", ";
       text << "at";

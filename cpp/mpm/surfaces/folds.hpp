@@ -7,6 +7,18 @@
 
 namespace mpm {
 
+/// Where a point was in its body at the start [m].
+template <int D>
+Vec<double, D> place_in_body(const Domain<D>& domain, std::uint32_t c) {
+  const auto& at_start = domain.surfaces.others.places_at_start;
+  if (!at_start.empty()) return at_start[c];
+  const ContactPoint<D>& point = domain.surfaces.points[c];
+  const Host<D>& host = domain.surfaces.hosts[point.host];
+  const int body = domain.surfaces.parts[host.part].body;
+  return listed_place(domain.pool_of(domain.body_at(body)), host.row) + point.surface.away -
+         (0.5 * domain.surfaces.spacing) * point.normal;
+}
+
 template <int D>
 class FoldedBodies {
  public:
@@ -40,15 +52,7 @@ class FoldedBodies {
  private:
   static constexpr double apart = 4.0;  // cells
 
-  Vec<double, D> place_in_body(std::uint32_t c) const {
-    const auto& at_start = domain_.surfaces.others.places_at_start;
-    if (!at_start.empty()) return at_start[c];
-    const ContactPoint<D>& point = domain_.surfaces.points[c];
-    const Host<D>& host = domain_.surfaces.hosts[point.host];
-    const int body = domain_.surfaces.parts[host.part].body;
-    return listed_place(domain_.pool_of(domain_.body_at(body)), host.row) + point.surface.away -
-           (0.5 * domain_.surfaces.spacing) * point.normal;
-  }
+  Vec<double, D> place_in_body(std::uint32_t c) const { return mpm::place_in_body(domain_, c); }
   template <class F>
   static void for_each_point(std::span<const SurfacePart<D>> parts, F&& f) {
     for (const SurfacePart<D>& part : parts)

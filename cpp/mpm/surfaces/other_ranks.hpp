@@ -23,7 +23,7 @@ template <int D>
 struct OtherRanks {
   std::vector<SurfacePartner> partners;
   std::vector<HostElsewhere<D>> hosts;          // that are felt here, by host
-  std::vector<Vec<double, D>> places_at_start;  // of all points [m]; of one rank none
+  std::vector<Vec<double, D>> places_at_start;  // of all points [m]; none where numbers tell
   Mail mail;
 };
 

@@ -201,10 +201,12 @@ struct Surfaces {
 
   std::vector<SurfacePart<D>> parts;  // by body, then by tile
   OtherRanks<D> others;
-  std::vector<std::int32_t> part_of;            // of each patch; -1: it has none
-  std::vector<Host<D>> hosts;                   // by part
-  std::vector<ContactPoint<D>> points;          // by host
-  std::vector<Vec<double, D>> places;           // of the points, after the last step [m]
+  std::vector<std::int32_t> part_of;    // of each patch; -1: it has none
+  std::vector<Host<D>> hosts;           // by part
+  std::vector<ContactPoint<D>> points;  // by host
+  std::vector<Vec<double, D>> places;   // of the points, after the last step [m]
+  // Of each point its number at the start, once numbers have changed (renew_points.hpp).
+  std::vector<std::uint32_t> first_numbers;
   std::vector<KeptOfContact<double>> set_back;  // by how much they overlapped at the start [m]
   std::vector<Bond<D>> bonds;                   // by their first points
 

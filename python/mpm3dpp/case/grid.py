@@ -100,7 +100,9 @@ class GridBox(CaseModel):
             walls = Walls.model_validate(data.get("walls", {}))
         except ValidationError:  # which is told of where the walls are
             return {key: value for key, value in data.items() if key != "friction"}
-        faces = [face for face in FACES if getattr(walls, face) == CONTACT]
+        lower = data.get("lower")
+        axes = "xyz"[: len(lower)] if isinstance(lower, list | tuple) else "xyz"
+        faces = [face for face in FACES if face[0] in axes and getattr(walls, face) == CONTACT]
         if not faces:
             rule = "needs a face of grid.box.walls that is contact: it has none"
             raise violation(rule, 'give walls = { y_min = "contact" }', path=("friction",))
@@ -196,7 +198,11 @@ class Grid(_Grid):
             return
         for face in FACES:
             word = getattr(self.box.walls, face)
-            if getattr(self.box.friction, face) is not None and word != CONTACT:
+            if getattr(self.box.friction, face) is None:
+                continue
+            if face[0] not in "xyz"[: self.dimension]:
+                word = f"not there, as grid.dimension = {self.dimension}"
+            if word != CONTACT:
                 rule = f"is of a face that is {word}"
                 remedy = f'give walls.{face} = "contact", or leave it out'
                 yield violation(rule, remedy, path=("box", "friction", face))

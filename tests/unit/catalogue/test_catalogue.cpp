@@ -87,7 +87,7 @@ void test_catalogue(Report& report) {
   }
   // The roles are those of the balance: each term counts in the residual as its row says.
   Ledger ledger;
-  const StepState state{ledger, 0, 0.0, 0.0, 0.0, 0};
+  const StepState state{ledger, 0, 0.0, 0.0, 0.0, 0, 0};
   double* const terms[] = {&ledger.kinetic,  &ledger.internal, &ledger.plastic, &ledger.viscous,
                            &ledger.friction, &ledger.contact,  &ledger.springs, &ledger.external,
                            &ledger.absorbed, &ledger.eroded,   &ledger.left,    &ledger.bounded,

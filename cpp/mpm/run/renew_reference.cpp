@@ -1,0 +1,240 @@
+#include "mpm/run/renew_reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <type_traits>
+#include <utility>
+
+#include "mpm/comm/all_sums.hpp"
+#include "mpm/followers/find_followers.hpp"
+#include "mpm/grid/blocks.hpp"
+#include "mpm/math/inverse.hpp"
+#include "mpm/run/kept_spins.hpp"
+#include "mpm/run/part_sums.hpp"
+#include "mpm/run/start_in_body.hpp"
+#include "mpm/run/watch_contact.hpp"
+#include "mpm/step/kept_nodes.hpp"
+#include "mpm/surfaces/renew_points.hpp"
+
+namespace mpm {
+namespace {
+
+// Fewer may have flowed far: by the others nodes still lie well.
+constexpr double share_of_particles = 0.01;
+// Particles farther apart, in cells, hardly hold together by new nodes, and contact points between
+// them let others through; more than that share of them may not be.
+constexpr double farthest = 1.5;
+
+/// f(body, pool, row) for own particles of bodies whose nodes may be laid anew.
+template <int D, class F>
+void for_each_that_flows(const Domain<D>& domain, F&& f) {
+  for (const Patch<D>& patch : domain.grid.patches) {
+    if (!patch.keeps || patch.foreign) continue;
+    const ParticlePool<D>& pool = domain.pool_of(patch);
+    if (pool.flowed_before < 0) continue;
+    for (const std::uint32_t row : pool.rows(patch))
+      f(static_cast<std::size_t>(patch.body), pool, row);
+  }
+}
+
+/// How many particles of each body have flowed by so much since its nodes were laid; of all ranks.
+template <int D>
+void count_flowed(const Domain<D>& domain, double strain, std::vector<std::int64_t>& counts) {
+  counts.assign(domain.bodies.size(), 0);
+  for_each_that_flows(domain, [&](std::size_t body, const auto& pool, std::uint32_t row) {
+    counts[body] += pool.columns.component(pool.flowed)[row] -
+                        pool.columns.component(pool.flowed_before)[row] >=
+                    strain;
+  });
+  domain.grid.partition.comm->all_sum(counts);
+}
+
+/// By how much a particle and its neighbours are farther apart than they were at the start, at
+/// most.
+template <int D>
+double stretched(const ParticlePool<D>& pool, std::uint32_t row) {
+  Mat<double, D> F;
+  for (int k = 0; k < D * D; ++k) F[k / D][k % D] = pool.deformation_part(k)[row];
+  return pool.columns.component(pool.stretched_before)[row] * std::sqrt(largest_stretch_squared(F));
+}
+
+/// How many particles of each body would be too far apart for new nodes; of all ranks.
+template <int D>
+std::vector<std::int64_t> count_parted(const Domain<D>& domain) {
+  std::vector<std::int64_t> counts(domain.bodies.size(), 0);
+  const double most = farthest * domain.grid.cell_size;
+  for_each_that_flows(domain, [&](std::size_t body, const auto& pool, std::uint32_t row) {
+    const double volume = pool.mass()[row] / domain.bodies[body].initial_density;
+    counts[body] += std::pow(volume, 1.0 / D) * stretched<D>(pool, row) > most;
+  });
+  domain.grid.partition.comm->all_sum(counts);
+  return counts;
+}
+
+/// The numbers of nodes, by body and tile.
+template <int D>
+using NumbersOfNodes = std::map<std::pair<int, Index<D>>, std::vector<double>>;
+
+/// Of the bodies that are not meant.
+template <int D>
+NumbersOfNodes<D> numbers_of_others(const Domain<D>& domain, const std::vector<bool>& renewed) {
+  NumbersOfNodes<D> numbers;
+  for (const Patch<D>& patch : domain.grid.patches) {
+    if (!patch.keeps || renewed[static_cast<std::size_t>(patch.body)]) continue;
+    const double* const first = domain.grid.kept.numbers.data() + patch.memory;
+    numbers[{patch.body, patch.tile}] = {first,
+                                         first + domain.grid.numbers_kept(patch.shape.node_count)};
+  }
+  return numbers;
+}
+template <int D>
+void give_back(Domain<D>& domain, const std::type_identity_t<NumbersOfNodes<D>>& numbers) {
+  for (const Patch<D>& patch : domain.grid.patches)
+    if (const auto at = numbers.find({patch.body, patch.tile}); at != numbers.end())
+      std::ranges::copy(at->second, domain.grid.kept.numbers.data() + patch.memory);
+}
+
+/// f(p, block) for the patches of these bodies.
+template <int D, class F>
+void for_each_block(Domain<D>& domain, const std::vector<bool>& bodies, F&& f) {
+  for (std::size_t p = 0; p < domain.grid.patches.size(); ++p) {
+    const Patch<D>& patch = domain.grid.patches[p];
+    if (patch.keeps && bodies[static_cast<std::size_t>(patch.body)]) f(patch, domain.grid.block(p));
+  }
+}
+
+/// Places in the body are those in space, where nothing is deformed.
+template <int D>
+void count_from_now(Domain<D>& domain, const std::vector<bool>& renewed) {
+  for (const Patch<D>& patch : domain.grid.patches) {
+    if (!patch.keeps || patch.foreign || !renewed[static_cast<std::size_t>(patch.body)]) continue;
+    ParticlePool<D>& pool = domain.pool_of(patch);
+    for (const std::uint32_t row : pool.rows(patch)) {
+      pool.columns.component(pool.stretched_before)[row] = stretched(pool, row);
+      Mat<double, D> F;
+      for (int k = 0; k < D * D; ++k)
+        F[k / D][k % D] = std::exchange(pool.deformation_part(k)[row], k / D == k % D ? 1.0 : 0.0);
+      for_each_piece_of(pool, row, [&](SurfacePiece<D>& piece) { piece.deform(F); });
+      for (int a = 0; a < D; ++a) pool.columns.component(pool.reference + a)[row] = pool.x(a)[row];
+      pool.columns.component(pool.flowed_before)[row] = pool.columns.component(pool.flowed)[row];
+    }
+  }
+}
+
+/// As the nodes move, whatever the inertia that is told of their bodies.
+template <int D>
+std::vector<PartSums> sums_of_nodes(Domain<D>& domain) {
+  std::vector<KeptSpin> spins = std::exchange(domain.kept_spins, {});
+  std::vector<PartSums> sums = sums_of_bodies(domain, SumsOf::kept_nodes);
+  domain.kept_spins = std::move(spins);
+  return sums;
+}
+
+/// A rotation for what passes between particles and nodes has taken of the angular momentum.
+template <int D>
+void keep_angular_momentum(Domain<D>& domain, const std::vector<bool>& renewed,
+                           const std::vector<PartSums>& before) {
+  const std::vector<PartSums> after = sums_of_nodes(domain);
+  const std::vector<bool> held = held_by_walls(domain);
+  for_each_block(domain, renewed, [&](const Patch<D>& patch, const NodeBlock<D>& block) {
+    const auto body = static_cast<std::size_t>(patch.body);
+    if (held[body]) return;
+    const Vector3 lacks = before[body].angular_momentum - after[body].angular_momentum;
+    const Vector3 spin = spin_of(after[body].inertia, lacks, D == 2 ? 4u : 7u);
+    for (int n = 0; n < block.count; ++n) {
+      if (!(block.records[n][mass_at] > 0.0)) continue;
+      const Vector3 arm = place_of_kept(domain.grid, patch, block, n) - after[body].centre;
+      const Vector3 v = cross(spin, arm);
+      for (int a = 0; a < D; ++a) block.records[n][velocity_at + a] += v[a];
+    }
+  });
+}
+
+template <int D>
+void renew(Domain<D>& domain, const std::vector<bool>& renewed) {
+  TileGrid<D>& grid = domain.grid;
+  const std::vector<PartSums> before = sums_of_nodes(domain);
+  const std::vector<KeptSpin> spins = gather_kept_spins(domain);
+  // Nodes have velocities of the middle of the last step, and so shall the new ones.
+  for_each_block(domain, renewed, [&](const Patch<D>&, const NodeBlock<D>& block) {
+    for (int n = 0; n < block.count; ++n)
+      std::fill_n(block.records[n] + half_record, half_record, 0.0);
+  });
+  give_kept_velocities(domain);
+  const NumbersOfNodes<D> others = numbers_of_others(domain, renewed);
+  RenewedPoints<D> points(domain, renewed);
+  count_from_now(domain, renewed);
+  std::optional<Owners<D>> owners = grid.partition.owners;
+  release_nodes(grid);
+  build_cell_lists(grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch,
+                   std::move(owners));
+  for (Patch<D>& patch : grid.patches) patch.left_cell = !patch.foreign && !patch.keeps;
+  domain.sums.resize(grid.patches.size());
+  if (grid.walls.exist) domain.face_parts.resize(grid.patches.size());
+  lay_nodes(domain, renewed);
+  give_back(domain, others);
+  find_followers(domain, renewed);
+  find_kept_velocities(domain, renewed);
+  keep_angular_momentum(domain, renewed, before);
+  // Bodies turn as they did, whatever of it their nodes have by now.
+  const std::vector<PartSums> after = sums_of_nodes(domain);
+  domain.kept_spins = spins;
+  for (KeptSpin& turning : domain.kept_spins)
+    turning.of_nodes = after[static_cast<std::size_t>(turning.body)].angular_momentum;
+  find_shared_bodies(domain);
+  for (std::size_t b = 0; b < renewed.size(); ++b) {
+    if (!renewed[b]) continue;
+    const double change = after[b].kinetic - before[b].kinetic;
+    domain.ledger.kinetic += change;
+    domain.ledger.transferred -= change;
+    ++domain.bodies[b].renewals;
+    ++domain.renewals;
+  }
+  start_average_in_body(domain);
+  points.lay(domain);
+}
+
+}  // namespace
+
+template <int D>
+void renew_references(Simulation<D>& simulation) {
+  Domain<D>& domain = simulation.domain;
+  const double strain = simulation.settings.run.renewal_strain;
+  if (domain.step % renewal_every != 0 || !(strain > 0.0) ||
+      std::ranges::none_of(domain.pools,
+                           [](const ParticlePool<D>& pool) { return pool.flowed_before >= 0; }))
+    return;
+  std::vector<std::int64_t>& flowed = simulation.flowed;
+  count_flowed(domain, strain, flowed);
+  const auto many = [&](const std::vector<std::int64_t>& counts, std::size_t b) {
+    return counts[b] > 0 && static_cast<double>(counts[b]) >=
+                                share_of_particles * static_cast<double>(domain.bodies[b].count);
+  };
+  const auto is_due = [&](std::size_t b) {
+    return !domain.bodies[b].keeps_its_nodes && many(flowed, b);
+  };
+  std::size_t first = 0;
+  while (first < flowed.size() && !is_due(first)) ++first;
+  if (first == flowed.size()) return;
+  std::vector<bool> renewed(flowed.size(), false);
+  const std::vector<bool> folded = near_themselves(domain);
+  const std::vector<std::int64_t> parted = count_parted(domain);
+  for (std::size_t b = first; b < renewed.size(); ++b) {
+    Body<D>& body = domain.bodies[b];
+    if (!is_due(b)) continue;
+    if (many(parted, b)) {
+      body.keeps_its_nodes = true;
+      note(simulation, {.kind = NoteKind::nodes_kept,
+                        .body = static_cast<int>(b),
+                        .share = static_cast<double>(parted[b]) / static_cast<double>(body.count)});
+    }
+    renewed[b] = !folded[b] && !body.keeps_its_nodes;
+  }
+  if (std::ranges::find(renewed, true) != renewed.end()) renew(domain, renewed);
+}
+
+template void renew_references<2>(Simulation<2>&);
+template void renew_references<3>(Simulation<3>&);
+
+}  // namespace mpm
