@@ -63,6 +63,16 @@ def test_three_warnings_of_a_kind_are_shown() -> None:
     ]
 
 
+def test_what_restitution_has_taken() -> None:
+    """It is told apart; in runs of older versions it is in `contact`, which is no error there."""
+    found = manifest({"kinetic": 100.0}, {"kinetic": 36.0, "restitution": 64.0})
+    assert energy_line(found).endswith("; restitution has taken 64.00%")
+    old = manifest({"kinetic": 100.0}, {"kinetic": 36.0, "contact": 64.0})
+    assert energy_line(old).startswith("warning: ")
+    old.case = {"contact": {"restitution": 0.6}}
+    assert energy_line(old).startswith("energy: ")
+
+
 def test_what_pic_takes_is_no_reason_for_smaller_steps() -> None:
     told = manifest({"kinetic": 100.0}, {"kinetic": 50.0, "numerical": 50.0})
     assert energy_line(told).endswith("; a smaller run.cfl or smaller cells may help")

@@ -73,7 +73,7 @@ struct SurfacePiece {
   double size = 0.0;           // area [m^2]: at an edge more than |area|; at a point a share
   Vec<double, D> area;         // outward area vector [m^2]
   Vec<double, D> arm;          // from the particle to the middle of the piece [m]
-  // Of a body that keeps its nodes these three are as they were in the body, for ever.
+  // Of a body that keeps its nodes these three are as they were when its nodes were laid.
 
   /// As F takes it along with its particle: da = cof(F) dA (Nanson), dx = F dX.
   void deform(const Mat<double, D>& F) {

@@ -64,7 +64,7 @@ struct Body {
   std::unique_ptr<PrescribedMotion> motion;  // none for the thousands of bodies that are free
   double pressure_impedance = 0.0, shear_impedance = 0.0;  // rho c of the start [kg/(m^2 s)]
   int renewals = 0;              // how often nodes have been laid anew into it ...
-  bool keeps_its_nodes = false;  // ... and no more, as its particles are too far apart by now
+  bool nodes_are_final = false;  // ... and no more (WhyNodesStay)
   std::size_t moved = 0;         // changes of cell since its rows were last sorted
   bool leaves = false;           // a rigid body that leaves the region that is kept, as a whole
   std::unique_ptr<GivenParticles> given;  // none if others take all, nor once they are in the pool

@@ -50,20 +50,14 @@ struct FirstTile {
 }  // namespace
 
 template <int D>
-std::vector<bool> held_by_walls(const Domain<D>& domain) {
-  std::vector<std::int64_t> held(domain.bodies.size());
+void list_kept_spins(Domain<D>& domain) {
+  const std::vector<PartSums> parts = sums_of_bodies(domain, SumsOf::particles);
+  std::vector<std::int64_t> held(parts.size());
   for (std::size_t b = 0; b < held.size(); ++b)
     held[b] = domain.bodies[b].keeps_nodes() && is_held(domain, static_cast<int>(b));
   domain.grid.partition.comm->all_sum(held);
-  return {held.begin(), held.end()};
-}
-
-template <int D>
-void list_kept_spins(Domain<D>& domain) {
-  const std::vector<PartSums> parts = sums_of_bodies(domain, SumsOf::particles);
-  const std::vector<bool> held = held_by_walls(domain);
   for (std::size_t b = 0; b < parts.size(); ++b) {
-    if (!domain.bodies[b].keeps_nodes() || held[b]) continue;
+    if (!domain.bodies[b].keeps_nodes() || held[b] > 0) continue;
     KeptSpin turning;
     turning.body = static_cast<int>(b);
     turning.mass = parts[b].mass;
@@ -132,8 +126,6 @@ void find_kept_spins(Domain<D>& domain) {
 
 template void list_kept_spins<2>(Domain<2>&);
 template void list_kept_spins<3>(Domain<3>&);
-template std::vector<bool> held_by_walls<2>(const Domain<2>&);
-template std::vector<bool> held_by_walls<3>(const Domain<3>&);
 template void find_shared_bodies<2>(Domain<2>&);
 template void find_shared_bodies<3>(Domain<3>&);
 template std::vector<KeptSpin> gather_kept_spins<2>(const Domain<2>&);

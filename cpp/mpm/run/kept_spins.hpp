@@ -9,10 +9,6 @@ namespace mpm {
 template <int D>
 void list_kept_spins(Domain<D>& domain);
 
-/// Do walls hold nodes of each body? All ranks together.
-template <int D>
-std::vector<bool> held_by_walls(const Domain<D>& domain);
-
 /// Which of them other ranks have a part of; anew where tiles have gone to other ranks.
 template <int D>
 void find_shared_bodies(Domain<D>& domain);

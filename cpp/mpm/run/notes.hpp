@@ -27,6 +27,8 @@ enum class NoteKind {
   deep,
   nodes_kept
 };
+/// Why nodes are not laid anew into a body that has flowed (renew_reference.hpp).
+enum class WhyNodesStay { no, parted, folded, near_wall };
 inline constexpr std::array note_names = {
     "time step",  "energy of a step", "load",      "outside walls", "volume",
     "left box",   "crowded node",     "unsettled", "gas volume",    "sparse particles",

@@ -8,6 +8,7 @@
 
 #include "mpm/comm/all_sums.hpp"
 #include "mpm/followers/find_followers.hpp"
+#include "mpm/followers/follow.hpp"
 #include "mpm/grid/blocks.hpp"
 #include "mpm/math/inverse.hpp"
 #include "mpm/run/kept_spins.hpp"
@@ -24,7 +25,14 @@ namespace {
 constexpr double share_of_particles = 0.01;
 // Particles farther apart, in cells, hardly hold together by new nodes, and contact points between
 // them let others through; more than that share of them may not be.
-constexpr double farthest = 1.5;
+constexpr double most_cells_apart = 1.5;
+// By how much, over 1, cells are narrower where that counts.
+constexpr double least_squeezed = 1.3;
+// Nodes of what is nearer to a wall of the box, in cells, may lie on it or beyond.
+constexpr double near_wall = 2.0, on_wall = 1.0;
+// Few bodies are seen to in this many steps only: all lists are made anew.
+constexpr std::int64_t few_every = 100;
+constexpr std::size_t few = 20;  // one in so many, or less
 
 /// f(body, pool, row) for own particles of bodies whose nodes may be laid anew.
 template <int D, class F>
@@ -38,14 +46,24 @@ void for_each_that_flows(const Domain<D>& domain, F&& f) {
   }
 }
 
-/// How many particles of each body have flowed by so much since its nodes were laid; of all ranks.
+/// By how much cells are narrower about a particle, at most.
+template <int D>
+double narrowed(const ParticlePool<D>& pool, std::uint32_t row) {
+  Mat<double, D> F;
+  for (int k = 0; k < D * D; ++k) F[k / D][k % D] = pool.deformation_part(k)[row];
+  return std::sqrt(largest_stretch_squared(inverse_of(F)));
+}
+
+/// How many particles of each body have flowed by so much since its nodes were laid, and made cells
+/// narrower, by which steps are shorter; of all ranks.
 template <int D>
 void count_flowed(const Domain<D>& domain, double strain, std::vector<std::int64_t>& counts) {
   counts.assign(domain.bodies.size(), 0);
   for_each_that_flows(domain, [&](std::size_t body, const auto& pool, std::uint32_t row) {
-    counts[body] += pool.columns.component(pool.flowed)[row] -
-                        pool.columns.component(pool.flowed_before)[row] >=
-                    strain;
+    const double by =
+        pool.columns.component(pool.flowed)[row] - pool.columns.component(pool.flowed_before)[row];
+    // What has flowed to and fro is as it was.
+    counts[body] += by >= strain && narrowed<D>(pool, row) >= least_squeezed;
   });
   domain.grid.partition.comm->all_sum(counts);
 }
@@ -63,13 +81,60 @@ double stretched(const ParticlePool<D>& pool, std::uint32_t row) {
 template <int D>
 std::vector<std::int64_t> count_parted(const Domain<D>& domain) {
   std::vector<std::int64_t> counts(domain.bodies.size(), 0);
-  const double most = farthest * domain.grid.cell_size;
+  const double most = most_cells_apart * domain.grid.cell_size;
   for_each_that_flows(domain, [&](std::size_t body, const auto& pool, std::uint32_t row) {
     const double volume = pool.mass()[row] / domain.bodies[body].initial_density;
     counts[body] += std::pow(volume, 1.0 / D) * stretched<D>(pool, row) > most;
   });
   domain.grid.partition.comm->all_sum(counts);
   return counts;
+}
+
+/// Of each body the slip and fixed faces of the box that its particles are near to, a bit 2 axis +
+/// side each, in the body and in space; of all ranks.
+template <int D>
+struct NearWalls {
+  std::vector<std::int64_t> in_body, in_space;  // counts by body and face
+
+  explicit NearWalls(const Domain<D>& domain)
+      : in_body(domain.bodies.size() * 2 * D), in_space(in_body.size()) {
+    const Walls<D>& walls = domain.grid.walls;
+    for_each_that_flows(domain, [&](std::size_t body, const auto& pool, std::uint32_t row) {
+      for (int a = 0; a < D && walls.exist; ++a)
+        for (int side = 0; side < 2; ++side) {
+          if (!holds(walls.face[a][side])) continue;
+          const auto before = [&](double place) {
+            const double x = domain.grid.in_cells(place, a);
+            return side == 0 ? x : walls.cells[static_cast<std::size_t>(a)] - x;
+          };
+          const std::size_t at = body * 2 * D + static_cast<std::size_t>(2 * a + side);
+          in_body[at] += before(pool.listed(a)[row]) < on_wall;
+          in_space[at] += before(pool.x(a)[row]) < near_wall;
+        }
+    });
+    domain.grid.partition.comm->all_sum(in_body);
+    domain.grid.partition.comm->all_sum(in_space);
+  }
+  static bool holds(Wall wall) { return wall == Wall::slip || wall == Wall::fixed; }
+
+  /// Has a body come near a face that did not hold it?
+  bool comes_near(std::size_t body) const {
+    bool near = false;
+    for (std::size_t k = body * 2 * D; k < (body + 1) * 2 * D; ++k)
+      near = near || (in_space[k] > 0 && in_body[k] == 0);
+    return near;
+  }
+};
+
+/// The axes about which a body that walls hold turns freely, a bit each.
+template <int D>
+unsigned free_axes(const Domain<D>& domain, const NearWalls<D>& near, std::size_t body) {
+  unsigned axes = D == 2 ? 4u : 7u;
+  for (int a = 0; a < D; ++a)
+    for (int side = 0; side < 2; ++side)
+      if (near.in_body[body * 2 * D + static_cast<std::size_t>(2 * a + side)] > 0)
+        axes &= domain.grid.walls.face[a][side] == Wall::slip ? 1u << a : 0u;
+  return axes;
 }
 
 /// The numbers of nodes, by body and tile.
@@ -89,7 +154,7 @@ NumbersOfNodes<D> numbers_of_others(const Domain<D>& domain, const std::vector<b
   return numbers;
 }
 template <int D>
-void give_back(Domain<D>& domain, const std::type_identity_t<NumbersOfNodes<D>>& numbers) {
+void restore_numbers(Domain<D>& domain, const std::type_identity_t<NumbersOfNodes<D>>& numbers) {
   for (const Patch<D>& patch : domain.grid.patches)
     if (const auto at = numbers.find({patch.body, patch.tile}); at != numbers.end())
       std::ranges::copy(at->second, domain.grid.kept.numbers.data() + patch.memory);
@@ -134,14 +199,12 @@ std::vector<PartSums> sums_of_nodes(Domain<D>& domain) {
 /// A rotation for what passes between particles and nodes has taken of the angular momentum.
 template <int D>
 void keep_angular_momentum(Domain<D>& domain, const std::vector<bool>& renewed,
-                           const std::vector<PartSums>& before) {
+                           const std::vector<PartSums>& before, const NearWalls<D>& walls) {
   const std::vector<PartSums> after = sums_of_nodes(domain);
-  const std::vector<bool> held = held_by_walls(domain);
   for_each_block(domain, renewed, [&](const Patch<D>& patch, const NodeBlock<D>& block) {
     const auto body = static_cast<std::size_t>(patch.body);
-    if (held[body]) return;
     const Vector3 lacks = before[body].angular_momentum - after[body].angular_momentum;
-    const Vector3 spin = spin_of(after[body].inertia, lacks, D == 2 ? 4u : 7u);
+    const Vector3 spin = spin_of(after[body].inertia, lacks, free_axes(domain, walls, body));
     for (int n = 0; n < block.count; ++n) {
       if (!(block.records[n][mass_at] > 0.0)) continue;
       const Vector3 arm = place_of_kept(domain.grid, patch, block, n) - after[body].centre;
@@ -149,37 +212,29 @@ void keep_angular_momentum(Domain<D>& domain, const std::vector<bool>& renewed,
       for (int a = 0; a < D; ++a) block.records[n][velocity_at + a] += v[a];
     }
   });
+  take_from_leading(domain, velocity_at);
 }
 
+/// Lists, patches and blocks anew, by where particles are in their bodies.
 template <int D>
-void renew(Domain<D>& domain, const std::vector<bool>& renewed) {
+void make_lists(Domain<D>& domain) {
   TileGrid<D>& grid = domain.grid;
-  const std::vector<PartSums> before = sums_of_nodes(domain);
-  const std::vector<KeptSpin> spins = gather_kept_spins(domain);
-  // Nodes have velocities of the middle of the last step, and so shall the new ones.
-  for_each_block(domain, renewed, [&](const Patch<D>&, const NodeBlock<D>& block) {
-    for (int n = 0; n < block.count; ++n)
-      std::fill_n(block.records[n] + half_record, half_record, 0.0);
-  });
-  give_kept_velocities(domain);
-  const NumbersOfNodes<D> others = numbers_of_others(domain, renewed);
-  RenewedPoints<D> points(domain, renewed);
-  count_from_now(domain, renewed);
   std::optional<Owners<D>> owners = grid.partition.owners;
   release_nodes(grid);
   build_cell_lists(grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch,
                    std::move(owners));
   for (Patch<D>& patch : grid.patches) patch.left_cell = !patch.foreign && !patch.keeps;
-  domain.sums.resize(grid.patches.size());
-  if (grid.walls.exist) domain.face_parts.resize(grid.patches.size());
-  lay_nodes(domain, renewed);
-  give_back(domain, others);
-  find_followers(domain, renewed);
-  find_kept_velocities(domain, renewed);
-  keep_angular_momentum(domain, renewed, before);
-  // Bodies turn as they did, whatever of it their nodes have by now.
+  domain.sums.assign(grid.patches.size(), {});
+  if (grid.walls.exist) domain.face_parts.assign(grid.patches.size(), {});
+}
+
+/// Bodies turn as they did, whatever of it their nodes have by now; what those have not of the
+/// kinetic energy is lost.
+template <int D>
+void count_renewal(Domain<D>& domain, const std::vector<bool>& renewed,
+                   const std::vector<PartSums>& before, std::vector<KeptSpin> spins) {
   const std::vector<PartSums> after = sums_of_nodes(domain);
-  domain.kept_spins = spins;
+  domain.kept_spins = std::move(spins);
   for (KeptSpin& turning : domain.kept_spins)
     turning.of_nodes = after[static_cast<std::size_t>(turning.body)].angular_momentum;
   find_shared_bodies(domain);
@@ -191,6 +246,29 @@ void renew(Domain<D>& domain, const std::vector<bool>& renewed) {
     ++domain.bodies[b].renewals;
     ++domain.renewals;
   }
+}
+
+/// All that is known of points and nodes comes first: it goes with the lists.
+template <int D>
+void renew(Domain<D>& domain, const std::vector<bool>& renewed, const NearWalls<D>& walls) {
+  const std::vector<PartSums> before = sums_of_nodes(domain);
+  std::vector<KeptSpin> spins = gather_kept_spins(domain);
+  // Nodes have velocities of the middle of the last step, and so shall the new ones.
+  for_each_block(domain, renewed, [&](const Patch<D>&, const NodeBlock<D>& block) {
+    for (int n = 0; n < block.count; ++n)
+      std::fill_n(block.records[n] + half_record, half_record, 0.0);
+  });
+  give_kept_velocities(domain);
+  const NumbersOfNodes<D> others = numbers_of_others(domain, renewed);
+  RenewedPoints<D> points(domain, renewed);
+  count_from_now(domain, renewed);
+  make_lists(domain);
+  lay_nodes(domain, renewed);
+  restore_numbers(domain, others);
+  find_followers(domain, renewed);
+  find_kept_velocities(domain, renewed);
+  keep_angular_momentum(domain, renewed, before, walls);
+  count_renewal(domain, renewed, before, std::move(spins));
   start_average_in_body(domain);
   points.lay(domain);
 }
@@ -212,26 +290,33 @@ void renew_references(Simulation<D>& simulation) {
                                 share_of_particles * static_cast<double>(domain.bodies[b].count);
   };
   const auto is_due = [&](std::size_t b) {
-    return !domain.bodies[b].keeps_its_nodes && many(flowed, b);
+    return !domain.bodies[b].nodes_are_final && many(flowed, b);
   };
-  std::size_t first = 0;
-  while (first < flowed.size() && !is_due(first)) ++first;
-  if (first == flowed.size()) return;
-  std::vector<bool> renewed(flowed.size(), false);
-  const std::vector<bool> folded = near_themselves(domain);
+  std::size_t due = 0;
+  for (std::size_t b = 0; b < flowed.size(); ++b) due += is_due(b);
+  if (due == 0 || (few * due < flowed.size() && domain.step % few_every != 0)) return;
+  std::vector<bool> renewed(flowed.size());
+  for (std::size_t b = 0; b < renewed.size(); ++b) renewed[b] = is_due(b);
+  const std::vector<bool> folded = near_themselves(domain, renewed);
   const std::vector<std::int64_t> parted = count_parted(domain);
-  for (std::size_t b = first; b < renewed.size(); ++b) {
+  const NearWalls<D> walls(domain);
+  for (std::size_t b = 0; b < renewed.size(); ++b) {
+    if (!renewed[b]) continue;
     Body<D>& body = domain.bodies[b];
-    if (!is_due(b)) continue;
-    if (many(parted, b)) {
-      body.keeps_its_nodes = true;
-      note(simulation, {.kind = NoteKind::nodes_kept,
-                        .body = static_cast<int>(b),
-                        .share = static_cast<double>(parted[b]) / static_cast<double>(body.count)});
-    }
-    renewed[b] = !folded[b] && !body.keeps_its_nodes;
+    const double share = static_cast<double>(parted[b]) / static_cast<double>(body.count);
+    const auto why = many(parted, b)       ? WhyNodesStay::parted
+                     : folded[b]           ? WhyNodesStay::folded
+                     : walls.comes_near(b) ? WhyNodesStay::near_wall
+                                           : WhyNodesStay::no;
+    if (why == WhyNodesStay::no) continue;
+    renewed[b] = false;
+    body.nodes_are_final = true;
+    note(simulation, {.kind = NoteKind::nodes_kept,
+                      .body = static_cast<int>(b),
+                      .value = static_cast<double>(why),
+                      .share = share});
   }
-  if (std::ranges::find(renewed, true) != renewed.end()) renew(domain, renewed);
+  if (std::ranges::find(renewed, true) != renewed.end()) renew(domain, renewed, walls);
 }
 
 template void renew_references<2>(Simulation<2>&);

@@ -9,6 +9,7 @@
 #include "mpm/run/save_kept_nodes.hpp"
 #include "mpm/run/surfaces.hpp"
 #include "mpm/run/time_step.hpp"
+#include "mpm/surfaces/renew_points.hpp"
 
 namespace mpm {
 namespace {
@@ -20,7 +21,8 @@ constexpr std::int64_t format = 24;  // raised whenever exchange() or what a val
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {
   stream.same(body.count, other_case);
-  stream(body.leaves, body.removed, body.renewals, body.keeps_its_nodes);
+  stream(body.leaves, body.removed, body.renewals, body.nodes_are_final);
+  StateStream::check(body.renewals >= 0, other_case);
   if (body.is_prescribed()) stream(body.motion->before, body.motion->now);
 }
 
@@ -79,7 +81,7 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
        {sizeof(Storage), sizeof(Ledger), sizeof(Removed), sizeof(RigidMotion),
         sizeof(SurfacePiece<D>), sizeof(StepWatch), sizeof(Note), sizeof(PairRecord),
         sizeof(CachedPair<D>), sizeof(KeptSpin), sizeof(ActingOnHost<D>), sizeof(ActingBetween<D>),
-        sizeof(ActingOnBody), sizeof(Levelled<D>)})
+        sizeof(ActingOnBody), sizeof(Levelled<D>), sizeof(LaidPoint<D>)})
     stream.same(size, other_version);
   stream.same(D, other_case);
   stream.same(domain.bodies.size(), other_case);

@@ -1,6 +1,7 @@
 #include "mpm/run/surfaces.hpp"
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "mpm/comm/letters.hpp"
@@ -210,7 +211,8 @@ void exchange_points(Domain<D>& domain, StateStream& stream) {
   StateStream::check(points.size() == surfaces.points.size(), damaged);
   for (std::uint32_t k = 0; k < points.size(); ++k) {
     const auto& [given, place, at_start] = points[k];
-    bool fine = given.number == k && given.body == part_of_point(surfaces, k).body &&
+    bool fine = std::abs(norm(given.normal) - 1.0) < 1e-9 && given.number == k &&
+                given.body == part_of_point(surfaces, k).body &&
                 given.particle < domain.body_at(given.body).count && given.face >= 0;
     for (const Vec<double, D>& v : {given.offset, given.normal, place, at_start})
       fine = fine && is_finite(v);
@@ -274,6 +276,10 @@ void exchange_surfaces(Domain<D>& domain, StateStream& stream) {
   find_parts(domain);
   exchange_state(domain, surfaces, stream);
   keep_own(domain);
+  // Where points are by now; how far they went in the last step is not known.
+  place_points(domain);
+  for (SurfacePart<D>& part : surfaces.parts)
+    part.square_of_step = std::numeric_limits<double>::infinity();
   if (!surfaces.meet) return;
   // How fast near points have moved against each other limits the step, and is known by the lists:
   // they are made where they were.

@@ -71,6 +71,23 @@ std::string deep_in_another(const std::string& whose, double share) {
   return text.str();
 }
 
+/// Of a body into which nodes are not laid anew.
+std::string nodes_stay(const std::string& whose, double per_cent, double why) {
+  std::ostringstream text;
+  text.precision(4);
+  text << whose << " has flowed far, and its nodes are not laid anew into it, ";
+  if (why == static_cast<double>(WhyNodesStay::parted))
+    text << "as " << per_cent << " % of its particles would be more than 1.5 cells apart";
+  else if (why == static_cast<double>(WhyNodesStay::folded))
+    text << "as it is folded, and they would weld its faces";
+  else
+    text << "as it is near a wall of the box that is slip or fixed, on which it did not begin";
+  text << ": its steps get shorter, its answers no worse";
+  if (why == static_cast<double>(WhyNodesStay::parted))
+    text << "; for longer steps give it more particles_per_cell";
+  return text.str();
+}
+
 /// What is so, and what can be done. `whose`: the body, or all of its entry.
 std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded, bool keeps) {
   std::ostringstream text;
@@ -118,9 +135,7 @@ std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded
       text << deep_in_another(whose, n.value);
       break;
     case NoteKind::nodes_kept:
-      text << whose << " has flowed far, and its nodes are not laid anew into it, as " << per_cent
-           << " % of its particles would be more than 1.5 cells apart: its steps get shorter, its "
-              "answers no worse; for longer steps give it more particles_per_cell";
+      text << nodes_stay(whose, per_cent, n.value);
       break;
     case NoteKind::unsettled:
       text << "run.settle.longest was over before forces balanced: those out of balance were "

@@ -2,7 +2,8 @@
 // Total Lagrangian MPM (de Vaucorbeil, Nguyen & Hutchinson 2020) with nodes that keep their motion:
 // of a body with `frame = "material"` the nodes lie in the body, at the places X_i of the grid when
 // it was filled, and each keeps its displacement u_i and velocity v_i from step to step. Nothing is
-// mapped there and back. With N_ip = N_i(X_p) for ever a step is
+// mapped there and back. With N_ip = N_i(X_p), which change only where nodes are laid anew
+// (run/renew_reference.hpp), a step is
 //   F_p = 1 + sum_i u_i (x) grad_X N_ip,   x_p = X_p + sum_i u_i N_ip                    (M1)
 //   f_i = - sum_p V_p sigma_p F_p^-T grad_X N_ip,   as V_p sigma_p F_p^-T = V0_p P_p     (M2)
 //   v_i += dt' (f_i / m_i + g),   u_i += dt v_i                                         (M3)

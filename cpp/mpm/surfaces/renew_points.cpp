@@ -1,6 +1,8 @@
 #include "mpm/surfaces/renew_points.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 #include "mpm/comm/all_sums.hpp"
 #include "mpm/surfaces/folds.hpp"
@@ -10,6 +12,11 @@
 
 namespace mpm {
 namespace {
+
+// Cosine of the angle within which a face looks at another: those of a waist do not.
+constexpr double facing = 0.5;
+constexpr double apart_in_renewed =
+    4.0;  // cells in a body, of points that may touch (FoldedBodies)
 
 /// How a host has been deformed, and its second derivatives.
 template <int D>
@@ -201,14 +208,45 @@ std::vector<std::uint32_t> lay_points(Domain<D>& domain, const std::vector<LaidP
 }
 
 template <int D>
-std::vector<bool> near_themselves(const Domain<D>& domain) {
-  std::vector<std::int64_t> near(domain.bodies.size(), 0);
-  for (const SurfacePart<D>& part : domain.surfaces.parts)
-    if (!part.foreign &&
-        std::ranges::find(part.near_of, part.body, &NearPoints::body) != part.near_of.end())
-      near[static_cast<std::size_t>(part.body)] = 1;
-  domain.grid.partition.comm->all_sum(near);
-  return {near.begin(), near.end()};
+std::vector<bool> near_themselves(Domain<D>& domain, const std::vector<bool>& bodies) {
+  const double h = domain.grid.cell_size, reach = 3.0 * h + domain.surfaces.spacing;
+  // In boxes of that size, with the boxes around.
+  std::map<std::pair<int, Index<D>>, std::vector<const LaidPoint<D>*>> boxes;
+  const std::vector<LaidPoint<D>> points = laid_points(domain, bodies);
+  const auto box_of = [&](const LaidPoint<D>& point) {
+    Index<D> box;
+    for (int a = 0; a < D; ++a)
+      box[static_cast<std::size_t>(a)] =
+          static_cast<std::int32_t>(std::floor(point.place[a] / reach));
+    return box;
+  };
+  for (const LaidPoint<D>& point : points)
+    if (bodies[static_cast<std::size_t>(point.given.body)] && point.given.area > 0.0)
+      boxes[{point.given.body, box_of(point)}].push_back(&point);
+  const auto look_at_each_other = [&](const LaidPoint<D>& c, const LaidPoint<D>& q) {
+    const Vec<double, D> way = q.place - c.place, in_body = q.at_start - c.at_start;
+    return dot(way, way) < reach * reach &&
+           dot(in_body, in_body) > std::pow(apart_in_renewed * h, 2) &&
+           dot(way, c.given.normal) > facing * norm(way) &&
+           -dot(way, q.given.normal) > facing * norm(way);
+  };
+  std::vector<bool> found(bodies.size(), false);
+  for (const auto& [key, own] : boxes) {
+    const auto body = key.first;
+    Index<D> low = key.second, high = low;
+    for (std::size_t a = 0; a < D; ++a) {
+      low[a] -= 1;
+      high[a] += 1;
+    }
+    for_each_index<D>(low, high, [&](const Index<D>& beside) {
+      const auto others = boxes.find({body, beside});
+      if (others == boxes.end()) return;
+      for (const LaidPoint<D>* c : own)
+        for (const LaidPoint<D>* q : others->second)
+          if (look_at_each_other(*c, *q)) found[static_cast<std::size_t>(body)] = true;
+    });
+  }
+  return found;
 }
 
 template std::vector<LaidPoint<2>> laid_points<2>(Domain<2>&, const std::vector<bool>&);
@@ -217,7 +255,7 @@ template class RenewedPoints<2>;
 template class RenewedPoints<3>;
 template std::vector<std::uint32_t> lay_points<2>(Domain<2>&, const std::vector<LaidPoint<2>>&);
 template std::vector<std::uint32_t> lay_points<3>(Domain<3>&, const std::vector<LaidPoint<3>>&);
-template std::vector<bool> near_themselves<2>(const Domain<2>&);
-template std::vector<bool> near_themselves<3>(const Domain<3>&);
+template std::vector<bool> near_themselves<2>(Domain<2>&, const std::vector<bool>&);
+template std::vector<bool> near_themselves<3>(Domain<3>&, const std::vector<bool>&);
 
 }  // namespace mpm

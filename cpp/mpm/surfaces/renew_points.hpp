@@ -62,9 +62,9 @@ std::uint32_t first_number(const Surfaces<D>& surfaces, std::uint32_t point) {
   return surfaces.first_numbers.empty() ? point : surfaces.first_numbers[point];
 }
 
-/// Which bodies have points near to others of their own that are far in the body: where they meet,
-/// nodes that were laid anew would weld them. Alike on all ranks.
+/// Which of some bodies have faces that look at each other from as near as nodes reach, and are far
+/// from each other in the body: nodes that were laid anew would weld them. All ranks together.
 template <int D>
-std::vector<bool> near_themselves(const Domain<D>& domain);
+std::vector<bool> near_themselves(Domain<D>& domain, const std::vector<bool>& bodies);
 
 }  // namespace mpm

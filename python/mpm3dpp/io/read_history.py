@@ -80,4 +80,4 @@ def read_history(path: str | Path) -> dict[str, np.ndarray]:
             rule = f"'{path}' is damaged: line {wrong[0] + 2} has no number for {name}"
             raise CaseError(rule, "take the line out, or run the case again")
     history = {name: columns[:, k] for k, name in enumerate(header)}
-    return {name: np.zeros(len(columns)) for name in _LATER if name not in header} | history
+    return history | {name: np.zeros(len(columns)) for name in _LATER if name not in header}

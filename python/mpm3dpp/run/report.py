@@ -146,6 +146,12 @@ def energy_line(manifest: Manifest) -> str:
     return f"{'warning: ' if large else ''}energy: {said}"
 
 
+def _restitution_takes(case: dict[str, Any]) -> bool:
+    """Return whether a case asks for a restitution below 1, of all or of a pair."""
+    contact = case.get("contact", {})
+    return any(one.get("restitution", 1.0) < 1.0 for one in (contact, *contact.get("pair", [])))
+
+
 def _nodes_in_bodies(case: dict[str, Any]) -> bool:
     """Return whether no body that deforms has its nodes in space, so that there is no transfer."""
     parts = [*case.get("body", {}).values(), *case.get("grains", {}).values()]
@@ -181,6 +187,8 @@ def energies_made(manifest: Manifest) -> tuple[str, bool]:
         for what, share in shares.items()
         if share != 0.0 or what != "contact"
     ]
+    if "restitution" not in final and _restitution_takes(manifest.case):
+        shares.pop("contact")  # In runs of older versions it has what restitution took.
     large = max(map(abs, shares.values())) > _NUMERICAL_WARNING
     line = f"{', '.join(said)} of {of_what}"
     if taken := final.get("restitution", 0.0):  # Manifests of older versions have none.
