@@ -12,6 +12,7 @@
 #include "mpm/grid/blocks.hpp"
 #include "mpm/math/inverse.hpp"
 #include "mpm/run/kept_spins.hpp"
+#include "mpm/run/near_walls.hpp"
 #include "mpm/run/part_sums.hpp"
 #include "mpm/run/start_in_body.hpp"
 #include "mpm/run/watch_contact.hpp"
@@ -28,30 +29,21 @@ constexpr double share_of_particles = 0.01;
 constexpr double most_cells_apart = 1.5;
 // By how much, over 1, cells are narrower where that counts.
 constexpr double least_squeezed = 1.3;
-// Nodes of what is nearer to a wall of the box, in cells, may lie on it or beyond.
-constexpr double near_wall = 2.0, on_wall = 1.0;
 // Few bodies are seen to in this many steps only: all lists are made anew.
 constexpr std::int64_t few_every = 100;
 constexpr std::size_t few = 20;  // one in so many, or less
 
-/// f(body, pool, row) for own particles of bodies whose nodes may be laid anew.
-template <int D, class F>
-void for_each_that_flows(const Domain<D>& domain, F&& f) {
-  for (const Patch<D>& patch : domain.grid.patches) {
-    if (!patch.keeps || patch.foreign) continue;
-    const ParticlePool<D>& pool = domain.pool_of(patch);
-    if (pool.flowed_before < 0) continue;
-    for (const std::uint32_t row : pool.rows(patch))
-      f(static_cast<std::size_t>(patch.body), pool, row);
-  }
+template <int D>
+Mat<double, D> deformation_of_row(const ParticlePool<D>& pool, std::uint32_t row) {
+  Mat<double, D> F;
+  for (int k = 0; k < D * D; ++k) F[k / D][k % D] = pool.deformation_part(k)[row];
+  return F;
 }
 
 /// By how much cells are narrower about a particle, at most.
 template <int D>
 double narrowed(const ParticlePool<D>& pool, std::uint32_t row) {
-  Mat<double, D> F;
-  for (int k = 0; k < D * D; ++k) F[k / D][k % D] = pool.deformation_part(k)[row];
-  return std::sqrt(largest_stretch_squared(inverse_of(F)));
+  return std::sqrt(largest_stretch_squared(inverse_of(deformation_of_row(pool, row))));
 }
 
 /// How many particles of each body have flowed by so much since its nodes were laid, and made cells
@@ -59,11 +51,14 @@ double narrowed(const ParticlePool<D>& pool, std::uint32_t row) {
 template <int D>
 void count_flowed(const Domain<D>& domain, double strain, std::vector<std::int64_t>& counts) {
   counts.assign(domain.bodies.size(), 0);
-  for_each_that_flows(domain, [&](std::size_t body, const auto& pool, std::uint32_t row) {
-    const double by =
-        pool.columns.component(pool.flowed)[row] - pool.columns.component(pool.flowed_before)[row];
+  for_each_that_flows(domain, [&](const Patch<D>& patch, const ParticlePool<D>& pool) {
+    const double *const now = pool.columns.component(pool.flowed), *const before =
+                                                                       pool.columns.component(
+                                                                           pool.flowed_before);
+    std::int64_t& count = counts[static_cast<std::size_t>(patch.body)];
     // What has flowed to and fro is as it was.
-    counts[body] += by >= strain && narrowed<D>(pool, row) >= least_squeezed;
+    for (const std::uint32_t row : pool.rows(patch))
+      count += now[row] - before[row] >= strain && narrowed(pool, row) >= least_squeezed;
   });
   domain.grid.partition.comm->all_sum(counts);
 }
@@ -72,9 +67,8 @@ void count_flowed(const Domain<D>& domain, double strain, std::vector<std::int64
 /// most.
 template <int D>
 double stretched(const ParticlePool<D>& pool, std::uint32_t row) {
-  Mat<double, D> F;
-  for (int k = 0; k < D * D; ++k) F[k / D][k % D] = pool.deformation_part(k)[row];
-  return pool.columns.component(pool.stretched_before)[row] * std::sqrt(largest_stretch_squared(F));
+  return pool.columns.component(pool.stretched_before)[row] *
+         std::sqrt(largest_stretch_squared(deformation_of_row(pool, row)));
 }
 
 /// How many particles of each body would be too far apart for new nodes; of all ranks.
@@ -82,59 +76,14 @@ template <int D>
 std::vector<std::int64_t> count_parted(const Domain<D>& domain) {
   std::vector<std::int64_t> counts(domain.bodies.size(), 0);
   const double most = most_cells_apart * domain.grid.cell_size;
-  for_each_that_flows(domain, [&](std::size_t body, const auto& pool, std::uint32_t row) {
-    const double volume = pool.mass()[row] / domain.bodies[body].initial_density;
-    counts[body] += std::pow(volume, 1.0 / D) * stretched<D>(pool, row) > most;
+  for_each_that_flows(domain, [&](const Patch<D>& patch, const ParticlePool<D>& pool) {
+    const double density = domain.body_of(patch).initial_density;
+    std::int64_t& count = counts[static_cast<std::size_t>(patch.body)];
+    for (const std::uint32_t row : pool.rows(patch))
+      count += std::pow(pool.mass()[row] / density, 1.0 / D) * stretched(pool, row) > most;
   });
   domain.grid.partition.comm->all_sum(counts);
   return counts;
-}
-
-/// Of each body the slip and fixed faces of the box that its particles are near to, a bit 2 axis +
-/// side each, in the body and in space; of all ranks.
-template <int D>
-struct NearWalls {
-  std::vector<std::int64_t> in_body, in_space;  // counts by body and face
-
-  explicit NearWalls(const Domain<D>& domain)
-      : in_body(domain.bodies.size() * 2 * D), in_space(in_body.size()) {
-    const Walls<D>& walls = domain.grid.walls;
-    for_each_that_flows(domain, [&](std::size_t body, const auto& pool, std::uint32_t row) {
-      for (int a = 0; a < D && walls.exist; ++a)
-        for (int side = 0; side < 2; ++side) {
-          if (!holds(walls.face[a][side])) continue;
-          const auto before = [&](double place) {
-            const double x = domain.grid.in_cells(place, a);
-            return side == 0 ? x : walls.cells[static_cast<std::size_t>(a)] - x;
-          };
-          const std::size_t at = body * 2 * D + static_cast<std::size_t>(2 * a + side);
-          in_body[at] += before(pool.listed(a)[row]) < on_wall;
-          in_space[at] += before(pool.x(a)[row]) < near_wall;
-        }
-    });
-    domain.grid.partition.comm->all_sum(in_body);
-    domain.grid.partition.comm->all_sum(in_space);
-  }
-  static bool holds(Wall wall) { return wall == Wall::slip || wall == Wall::fixed; }
-
-  /// Has a body come near a face that did not hold it?
-  bool comes_near(std::size_t body) const {
-    bool near = false;
-    for (std::size_t k = body * 2 * D; k < (body + 1) * 2 * D; ++k)
-      near = near || (in_space[k] > 0 && in_body[k] == 0);
-    return near;
-  }
-};
-
-/// The axes about which a body that walls hold turns freely, a bit each.
-template <int D>
-unsigned free_axes(const Domain<D>& domain, const NearWalls<D>& near, std::size_t body) {
-  unsigned axes = D == 2 ? 4u : 7u;
-  for (int a = 0; a < D; ++a)
-    for (int side = 0; side < 2; ++side)
-      if (near.in_body[body * 2 * D + static_cast<std::size_t>(2 * a + side)] > 0)
-        axes &= domain.grid.walls.face[a][side] == Wall::slip ? 1u << a : 0u;
-  return axes;
 }
 
 /// The numbers of nodes, by body and tile.
@@ -177,9 +126,8 @@ void count_from_now(Domain<D>& domain, const std::vector<bool>& renewed) {
     ParticlePool<D>& pool = domain.pool_of(patch);
     for (const std::uint32_t row : pool.rows(patch)) {
       pool.columns.component(pool.stretched_before)[row] = stretched(pool, row);
-      Mat<double, D> F;
-      for (int k = 0; k < D * D; ++k)
-        F[k / D][k % D] = std::exchange(pool.deformation_part(k)[row], k / D == k % D ? 1.0 : 0.0);
+      const Mat<double, D> F = deformation_of_row(pool, row);
+      for (int k = 0; k < D * D; ++k) pool.deformation_part(k)[row] = k / D == k % D ? 1.0 : 0.0;
       for_each_piece_of(pool, row, [&](SurfacePiece<D>& piece) { piece.deform(F); });
       for (int a = 0; a < D; ++a) pool.columns.component(pool.reference + a)[row] = pool.x(a)[row];
       pool.columns.component(pool.flowed_before)[row] = pool.columns.component(pool.flowed)[row];

@@ -19,6 +19,9 @@ Vec<double, D> place_in_body(const Domain<D>& domain, std::uint32_t c) {
          (0.5 * domain.surfaces.spacing) * point.normal;
 }
 
+/// Points of a body that are farther from each other in it may touch [cells].
+constexpr double apart_to_touch = 4.0;
+
 template <int D>
 class FoldedBodies {
  public:
@@ -45,13 +48,11 @@ class FoldedBodies {
   /// Are two points of a body so far from each other in it that they may touch?
   bool apart_in_body(std::uint32_t c, std::uint32_t q) const {
     const Vec<double, D> way = place_in_body(c) - place_in_body(q);
-    const double far = apart * domain_.grid.cell_size;
+    const double far = apart_to_touch * domain_.grid.cell_size;
     return dot(way, way) > far * far;
   }
 
  private:
-  static constexpr double apart = 4.0;  // cells
-
   Vec<double, D> place_in_body(std::uint32_t c) const { return mpm::place_in_body(domain_, c); }
   template <class F>
   static void for_each_point(std::span<const SurfacePart<D>> parts, F&& f) {
@@ -78,7 +79,7 @@ class FoldedBodies {
     });
     const Mat<double, D> turn = rotation_of(moments);
     // Of two points that come nearer than `reach` one is off by half of what they lack, or more.
-    const double far = 0.5 * (apart * domain_.grid.cell_size - reach_);
+    const double far = 0.5 * (apart_to_touch * domain_.grid.cell_size - reach_);
     bool bent = false;
     for_each_point(parts, [&](std::uint32_t c) {
       const Vec<double, D> off =

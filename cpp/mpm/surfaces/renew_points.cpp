@@ -15,8 +15,6 @@ namespace {
 
 // Cosine of the angle within which a face looks at another: those of a waist do not.
 constexpr double facing = 0.5;
-constexpr double apart_in_renewed =
-    4.0;  // cells in a body, of points that may touch (FoldedBodies)
 
 /// How a host has been deformed, and its second derivatives.
 template <int D>
@@ -226,7 +224,7 @@ std::vector<bool> near_themselves(Domain<D>& domain, const std::vector<bool>& bo
   const auto look_at_each_other = [&](const LaidPoint<D>& c, const LaidPoint<D>& q) {
     const Vec<double, D> way = q.place - c.place, in_body = q.at_start - c.at_start;
     return dot(way, way) < reach * reach &&
-           dot(in_body, in_body) > std::pow(apart_in_renewed * h, 2) &&
+           dot(in_body, in_body) > std::pow(apart_to_touch * h, 2) &&
            dot(way, c.given.normal) > facing * norm(way) &&
            -dot(way, q.given.normal) > facing * norm(way);
   };
