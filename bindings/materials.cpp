@@ -75,8 +75,8 @@ void add_drive(nb::module_& m) {
       "drive_material",
       [](double density, const std::string& strength, const Parameters& parameters,
          const std::optional<Named>& eos, const std::vector<NamedFailure>& failures,
-         Viscosity viscosity, bool volume_averaging, const Input& increments, double time_step,
-         double cell_size, const Parameters& state, bool lanes) {
+         Viscosity viscosity, std::optional<bool> volume_averaging, const Input& increments,
+         double time_step, double cell_size, const Parameters& state, bool lanes) {
         if (increments.ndim() != 3 || increments.shape(1) != 3 || increments.shape(2) != 3)
           throw std::invalid_argument("increments must have the shape (n, 3, 3)");
         DrivenPoint point =
@@ -87,8 +87,9 @@ void add_drive(nb::module_& m) {
         return std::tuple(to_numpy(std::move(point.values), columns), point.names, point.units);
       },
       nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
-      nb::arg("failures"), nb::arg("viscosity"), nb::arg("volume_averaging"), nb::arg("increments"),
-      nb::arg("time_step"), nb::arg("cell_size"), nb::arg("state"), nb::arg("lanes"));
+      nb::arg("failures"), nb::arg("viscosity"), nb::arg("volume_averaging").none(),
+      nb::arg("increments"), nb::arg("time_step"), nb::arg("cell_size"), nb::arg("state"),
+      nb::arg("lanes"));
 }
 
 /// What matter a material is.
@@ -97,13 +98,13 @@ void add_matter(nb::module_& m) {
       "breaks_up",
       [](double density, const std::string& strength, const Parameters& parameters,
          const std::optional<Named>& eos, const std::vector<NamedFailure>& failures,
-         bool volume_averaging) {
+         std::optional<bool> volume_averaging) {
         return make_material(choice_of(density, strength, parameters, eos, failures, {}, 0.0,
                                        volume_averaging))
             .breaks_up();
       },
       nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
-      nb::arg("failures"), nb::arg("volume_averaging"),
+      nb::arg("failures"), nb::arg("volume_averaging").none(),
       "Whether particles of a material may part: it flows, is loose, can fail or spall");
 
   m.def(
@@ -146,9 +147,10 @@ void add_materials(nb::module_& m) {
       [](int dimension, bool may_leave, bool forced, bool of_start, const std::string& transfer,
          bool springs, double density, const std::string& strength, const Parameters& parameters,
          const std::optional<Named>& eos, const std::vector<NamedFailure>& failures,
-         Viscosity viscosity, double damping, bool volume_averaging, bool in_body) {
-        const Material material = make_material(choice_of(
-            density, strength, parameters, eos, failures, viscosity, damping, volume_averaging));
+         Viscosity viscosity, double damping, std::optional<bool> volume_averaging, bool in_body) {
+        const Material material =
+            make_material(choice_of(density, strength, parameters, eos, failures, viscosity,
+                                    damping, volume_averaging, in_body));
         const TransferId id = choice_named<TransferId>("transfer", transfer);
         return dimension == 2 ? names_of_columns<2>(material, may_leave, forced, of_start, id,
                                                     springs, in_body)
@@ -158,7 +160,7 @@ void add_materials(nb::module_& m) {
       nb::arg("dimension"), nb::arg("may_leave"), nb::arg("forced"), nb::arg("of_start"),
       nb::arg("transfer"), nb::arg("springs"), nb::arg("density"), nb::arg("strength"),
       nb::arg("parameters"), nb::arg("eos").none(), nb::arg("failures"), nb::arg("viscosity"),
-      nb::arg("damping"), nb::arg("volume_averaging"), nb::arg("in_body") = false,
+      nb::arg("damping"), nb::arg("volume_averaging").none(), nb::arg("in_body") = false,
       "The names of the columns that particles of a material have; `may_leave`: there is an "
       "outflow box, `forced`: a body force, which is a formula `of_start`, of places at the start; "
       "`springs`: of contact; `in_body`: of a body on nodes of its own");

@@ -34,15 +34,13 @@ void def_building(SimulationClass& simulation) {
            of_any([](auto& s, double density, const std::string& strength,
                      const Parameters& parameters, const std::optional<Named>& eos,
                      const std::vector<NamedFailure>& failures, Viscosity viscosity, double damping,
-                     bool volume_averaging, bool in_body) {
-             return add_material(s,
-                                 choice_of(density, strength, parameters, eos, failures, viscosity,
-                                           damping, volume_averaging),
-                                 in_body);
+                     std::optional<bool> volume_averaging, bool in_body) {
+             return add_material(s, choice_of(density, strength, parameters, eos, failures,
+                                              viscosity, damping, volume_averaging, in_body));
            }),
            nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
            nb::arg("failures"), nb::arg("viscosity"), nb::arg("damping"),
-           nb::arg("volume_averaging"), nb::arg("in_body") = false)
+           nb::arg("volume_averaging").none(), nb::arg("in_body") = false)
       .def("add_body",
            of_any([](auto& s, const std::string& name, int material, const Input& positions,
                      const Input& velocities, const Input& volumes) {

@@ -56,10 +56,11 @@ inline Floats floats(std::size_t rows, std::size_t columns, float value) {
 inline MaterialChoice choice_of(double density, const std::string& strength,
                                 const Parameters& parameters, const std::optional<Named>& eos,
                                 const std::vector<NamedFailure>& failures, Viscosity viscosity,
-                                double damping, bool volume_averaging) {
+                                double damping, std::optional<bool> volume_averaging,
+                                bool in_body = false) {
   MaterialChoice choice{
-      density, {strength, parameters}, {}, {}, {viscosity.first, viscosity.second},
-      damping, volume_averaging};
+      density, {strength, parameters}, {},     {}, {viscosity.first, viscosity.second},
+      damping, volume_averaging,       in_body};
   if (eos) choice.eos = ModelChoice{eos->first, eos->second};
   for (const auto& [name, values, action] : failures)
     choice.failures.push_back({{name, values}, action});

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from mpm3dpp import Case, Simulation, _core
 
@@ -73,6 +74,24 @@ def period(times: np.ndarray, values: np.ndarray) -> float:
     k = np.flatnonzero(np.diff(np.sign(values)))
     at = times[k] - values[k] * (times[k + 1] - times[k]) / (values[k + 1] - values[k])
     return float(2.0 * (at[-1] - at[0]) / (len(at) - 1))
+
+
+def rms(values: Any) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def noise_of_pressure(
+    simulation: Simulation, name: str = "a", cell: float = CELL
+) -> tuple[float, float]:
+    """Return the rms of what a linear fit within 1.5 cells does not have, and of the pressure."""
+    places, stress = (simulation.column(name, field) for field in ("position", "stress"))
+    pressure = -stress[:, :3].sum(axis=1) / 3.0
+    beyond = []
+    for k, near in enumerate(cKDTree(places).query_ball_point(places, 1.5 * cell)):
+        terms = np.column_stack([np.ones(len(near)), places[near] - places[k]])
+        fit, *_ = np.linalg.lstsq(terms, pressure[near], rcond=None)
+        beyond.append(pressure[k] - fit[0])
+    return rms(beyond), rms(pressure)
 
 
 BLOCKS = """

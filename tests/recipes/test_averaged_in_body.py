@@ -7,28 +7,20 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.spatial import cKDTree
 
-from in_body import CELL, DENSITY, E, energies, frame_tables, period, run_to_end
+from in_body import (
+    CELL,
+    DENSITY,
+    E,
+    energies,
+    frame_tables,
+    noise_of_pressure,
+    period,
+    run_to_end,
+)
 from mpm3dpp import Case, Simulation
 
 MODE = 4.730040745  # of a free bar, the first; Timoshenko, Vibration Problems in Engineering
-
-
-def rms(values: Any) -> float:
-    return float(np.sqrt(np.mean(np.square(values))))
-
-
-def noise_of_pressure(simulation: Simulation) -> tuple[float, float]:
-    """Return the rms of what a linear fit within 1.5 cells does not have, and of the pressure."""
-    places, stress = (simulation.column("a", name) for name in ("position", "stress"))
-    pressure = -stress[:, :3].sum(axis=1) / 3.0
-    beyond = []
-    for k, near in enumerate(cKDTree(places).query_ball_point(places, 1.5 * CELL)):
-        terms = np.column_stack([np.ones(len(near)), places[near] - places[k]])
-        fit, *_ = np.linalg.lstsq(terms, pressure[near], rcond=None)
-        beyond.append(pressure[k] - fit[0])
-    return rms(beyond), rms(pressure)
 
 
 def bending(averages: bool, nu: float) -> tuple[float, float, float]:
@@ -107,3 +99,53 @@ def test_a_uniform_pressure_is_left_as_it_is(dimension: int, basis: str) -> None
         found.append([stress, simulation.column("a", "velocity")])
     for own, averaged in zip(*found, strict=True):
         assert np.abs(averaged - own).max() < 1e-12 * np.abs(own).max() > 0.0
+
+
+ELASTIC = {"elastic": {"E": E, "nu": 0.3}}
+FIRM = {"j2": {"E": E, "nu": 0.3, "Y0": E}}
+SOFT = {"j2": {"E": E, "nu": 0.3, "Y0": 1e-4 * E}}
+RUBBER = {"elastic": {"E": E, "nu": 0.46}}
+GEL = {"neo_hookean": {"K": 20.0 * E, "G": E}}
+
+
+def sheared(strength: dict[str, Any], dimension: int, **material: Any) -> np.ndarray:
+    """Return where a block of a material is that has gone to and fro for a while."""
+    h = 4 * CELL
+    tables = frame_tables(
+        dimension,
+        {
+            "shape": {"box": {"lower": [0.0] * dimension, "upper": [h] * dimension}},
+            "velocity": [{"expression": f"2 * sin(3 * y / {h}) * x / {h}"}]
+            + [0.0] * (dimension - 1),
+        },
+        1.0,
+    )
+    tables["material"]["m"] = {"density": DENSITY, "strength": strength, **material}
+    simulation = Simulation(Case.model_validate(tables), threads=1)
+    simulation.advance(60)
+    return simulation.column("a", "position")
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize(
+    "strength", [ELASTIC, FIRM, SOFT, RUBBER, GEL], ids=lambda s: next(iter(s))
+)
+def test_what_is_averaged_by_default(strength: dict[str, Any], dimension: int) -> None:
+    """What hardly changes its volume; what yields once it does, and not what could."""
+    default, never, always = (
+        sheared(strength, dimension, **given)
+        for given in ({}, {"volume_averaging": False}, {"volume_averaging": True})
+    )
+    assert (default == never).all() == (strength in (ELASTIC, FIRM))
+    assert (default == always).all() == (strength in (RUBBER, GEL))
+    assert not (never == always).all()
+
+
+def test_viscous_pressure_acts_until_a_body_flows() -> None:
+    """Which is stored beside that which forces use."""
+    given = {"artificial_viscosity": {}}
+    default, never = (
+        sheared(FIRM, 2, **given, **more) for more in ({}, {"volume_averaging": False})
+    )
+    assert (default == never).all()
+    assert not (never == sheared(FIRM, 2)).all()

@@ -110,6 +110,36 @@ double shear_modulus(const Material& material) {
       material.strength);
 }
 
+namespace {
+
+/// Above this ratio of Poisson matter is nearly incompressible: pressures of bodies on nodes of
+/// their own are mostly noise.
+constexpr double nearly_incompressible = 0.45;
+
+/// Poisson's ratio at small strain.
+double poissons_ratio(const Material& material) {
+  const double c = sound_speed_at_start(material), G = shear_modulus(material);
+  const double M = material.density * c * c;
+  return M > G ? (M - 2.0 * G) / (2.0 * (M - G)) : 0.0;
+}
+
+void choose_averaging(Material& material, const MaterialChoice& choice) {
+  const bool wanted = choice.volume_averaging.value_or(false);
+  if (wanted && material.moves_as_one())
+    throw std::invalid_argument(choice.strength.name +
+                                " does not deform and takes no volume_averaging");
+  if (wanted && material.burns())
+    throw std::invalid_argument(choice.strength.name +
+                                " takes no volume_averaging: its front is sharper than a cell");
+  material.averages_volume = wanted;
+  if (choice.volume_averaging || !choice.in_body) return;
+  const bool always = poissons_ratio(material) > nearly_incompressible;
+  material.averages_volume = always || material.yields();
+  material.once_it_flows = !always;
+}
+
+}  // namespace
+
 Material make_material(const MaterialChoice& choice) {
   if (!Rule::positive.allows(choice.density))
     refuse("density", choice.density, Rule::positive.text());
@@ -141,21 +171,16 @@ Material make_material(const MaterialChoice& choice) {
     if (!row.rule.allows(factor)) refuse("viscosity", factor, row.rule.text());
   });
   material.viscosity = choice.viscosity;
-  if (choice.volume_averaging && material.moves_as_one())
-    throw std::invalid_argument(choice.strength.name +
-                                " does not deform and takes no volume_averaging");
-  if (choice.volume_averaging && material.burns())
-    throw std::invalid_argument(choice.strength.name +
-                                " takes no volume_averaging: its front is sharper than a cell");
-  material.averages_volume = choice.volume_averaging;
   material.bounds = bounds_of(material);
+  choose_averaging(material, choice);
   if (!Rule::not_negative.allows(choice.damping))
     refuse("damping.stiffness", choice.damping, Rule::not_negative.text());
   if (choice.damping > 0.0) {
     if (material.moves_as_one())
       throw std::invalid_argument("a material without stress takes no damping.stiffness");
     const double c = sound_speed_at_start(material), G = shear_modulus(material);
-    const bool of_shape = choice.volume_averaging;
+    // In space particles have no change of volume of their own then.
+    const bool of_shape = material.averages_volume && !choice.in_body;
     if (of_shape && !(G > 0.0))
       throw std::invalid_argument(
           "a fluid with volume_averaging takes no damping.stiffness, which is of its shape then");

@@ -107,7 +107,9 @@ struct Material {
   BulkViscosity viscosity{0.0, 0.0};  // none
   StiffnessDamping damping{};         // none
   EosBounds bounds{};
-  bool averages_volume = false;  // over a cell's particles (step/volume_averaging.hpp)
+  // Over a cell's particles (step/volume_averaging.hpp); of bodies on nodes of their own their
+  // pressures (step/average_in_body.cpp), or only once a body flows.
+  bool averages_volume = false, once_it_flows = false;
 
   bool moves_as_one() const {
     return std::visit([]<class M>(const M&) { return requires { M::moves_as_one; }; }, strength);
@@ -117,6 +119,14 @@ struct Material {
   }
   bool damps() const {
     return std::visit([]<class M>(const M&) { return Damps<M>; }, strength);
+  }
+  /// Does it flow plastically, and keep how far?
+  bool yields() const {
+    return std::visit(
+        []<class M>(const M&) {
+          return requires(typename M::template State<double, 3> s) { s.plastic_strain; };
+        },
+        strength);
   }
   /// Has it no shape of its own?
   bool flows() const {
@@ -158,7 +168,10 @@ struct MaterialChoice {
   std::vector<FailureChoice> failures;
   BulkViscosity viscosity{0.0, 0.0};  // none
   double damping = 0.0;               // beta [s]
-  bool volume_averaging = false;
+  // If nothing is said, of bodies on nodes of their own: always if they hardly change their volume,
+  // of those that flow plastically once they do.
+  std::optional<bool> volume_averaging = false;
+  bool in_body = false;  // of bodies on nodes of their own
 };
 
 /// Throws std::invalid_argument, in one sentence, for an unknown model or parameter, one that is

@@ -97,7 +97,10 @@ Body<D> empty_body(std::string name, const Material& material, const ParticlePoo
   body.name = std::move(name);
   body.count = count;
   if (material.moves_as_one()) body.kind = BodyKind::rigid;
-  if (pool.reference >= 0) body.kind = BodyKind::material;
+  if (pool.reference >= 0) {
+    body.kind = BodyKind::material;
+    body.averages = material.averages_volume && !material.once_it_flows;
+  }
   body.matter = material.matter();
   const double speed = pool.sound_speed;
   body.total_mass = material.density * volume;

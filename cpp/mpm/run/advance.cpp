@@ -97,6 +97,7 @@ std::int64_t advance(Simulation<D>& simulation, std::int64_t max_steps, double e
   const auto begin = std::chrono::steady_clock::now();
   std::int64_t made = 0;
   while (made < max_steps && domain.time < end_time && !simulation.failure) {
+    average_what_flows(simulation);
     renew_references(simulation);
     const double next_stop = domain.settles() ? std::min(end_time, 0.0) : end_time;
     const double left = next_stop - domain.time;

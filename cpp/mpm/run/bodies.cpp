@@ -28,14 +28,14 @@ bool leads_group(const Domain<D>& domain, int number) {
 }  // namespace
 
 template <int D>
-int add_material(Simulation<D>& simulation, const MaterialChoice& choice, bool in_body) {
+int add_material(Simulation<D>& simulation, const MaterialChoice& choice) {
   require(simulation, Phase::building, "materials must be added before prepare()");
   Domain<D>& domain = simulation.domain;
   const Material material = make_material(choice);
-  if (in_body) check_in_body(material);
+  if (choice.in_body) check_in_body(material);
   domain.materials.push_back(material);
   domain.pools.push_back(
-      make_pool(domain.materials.back(), domain.grid, columns_of(domain.transfer, in_body)));
+      make_pool(domain.materials.back(), domain.grid, columns_of(domain.transfer, choice.in_body)));
   return static_cast<int>(domain.materials.size()) - 1;
 }
 
@@ -224,8 +224,8 @@ void set_gravity(Domain<D>& domain, const std::array<TimeFunction, 3>& gravity) 
   domain.gravity_of_time = gravity;
 }
 
-template int add_material<2>(Simulation<2>&, const MaterialChoice&, bool);
-template int add_material<3>(Simulation<3>&, const MaterialChoice&, bool);
+template int add_material<2>(Simulation<2>&, const MaterialChoice&);
+template int add_material<3>(Simulation<3>&, const MaterialChoice&);
 template int add_body<2>(Simulation<2>&, const std::string&, int, std::span<const double>,
                          std::span<const double>, std::span<const double>);
 template int add_body<3>(Simulation<3>&, const std::string&, int, std::span<const double>,

@@ -11,7 +11,7 @@ namespace mpm {
 
 /// Returns its number. `in_body`: of bodies on nodes of their own (step/kept_nodes.hpp).
 template <int D>
-int add_material(Simulation<D>& simulation, const MaterialChoice& choice, bool in_body = false);
+int add_material(Simulation<D>& simulation, const MaterialChoice& choice);
 /// Positions and velocities are (n, D) row by row, or one row of velocities for all; volumes n
 /// values, or one for all. Returns the body's number.
 template <int D>

@@ -3,20 +3,9 @@
 // (renew_reference.hpp).
 #include <vector>
 
-#include "mpm/comm/all_sums.hpp"
-#include "mpm/domain.hpp"
+#include "mpm/run/particles_that_flow.hpp"
 
 namespace mpm {
-
-/// f(patch, pool) for own patches of bodies whose nodes may be laid anew.
-template <int D, class F>
-void for_each_that_flows(const Domain<D>& domain, F&& f) {
-  for (const Patch<D>& patch : domain.grid.patches) {
-    if (!patch.keeps || patch.foreign) continue;
-    const ParticlePool<D>& pool = domain.pool_of(patch);
-    if (pool.flowed_before >= 0) f(patch, pool);
-  }
-}
 
 /// How many particles of each body are near to each slip or fixed face of the box, by where they
 /// are in the body, so that it holds nodes of theirs, and in space; of all ranks.

@@ -22,10 +22,8 @@
 namespace mpm {
 namespace {
 
-// Fewer may have flowed far: by the others nodes still lie well.
-constexpr double share_of_particles = 0.01;
 // Particles farther apart, in cells, hardly hold together by new nodes, and contact points between
-// them let others through; more than that share of them may not be.
+// them let others through; no more than a few may be.
 constexpr double most_cells_apart = 1.5;
 // By how much, over 1, cells are narrower where that counts.
 constexpr double least_squeezed = 1.3;
@@ -46,23 +44,6 @@ double narrowed(const ParticlePool<D>& pool, std::uint32_t row) {
   return std::sqrt(largest_stretch_squared(inverse_of(deformation_of_row(pool, row))));
 }
 
-/// How many particles of each body have flowed by so much since its nodes were laid, and made cells
-/// narrower, by which steps are shorter; of all ranks.
-template <int D>
-void count_flowed(const Domain<D>& domain, double strain, std::vector<std::int64_t>& counts) {
-  counts.assign(domain.bodies.size(), 0);
-  for_each_that_flows(domain, [&](const Patch<D>& patch, const ParticlePool<D>& pool) {
-    const double *const now = pool.columns.component(pool.flowed), *const before =
-                                                                       pool.columns.component(
-                                                                           pool.flowed_before);
-    std::int64_t& count = counts[static_cast<std::size_t>(patch.body)];
-    // What has flowed to and fro is as it was.
-    for (const std::uint32_t row : pool.rows(patch))
-      count += now[row] - before[row] >= strain && narrowed(pool, row) >= least_squeezed;
-  });
-  domain.grid.partition.comm->all_sum(counts);
-}
-
 /// By how much a particle and its neighbours are farther apart than they were at the start, at
 /// most.
 template <int D>
@@ -74,15 +55,13 @@ double stretched(const ParticlePool<D>& pool, std::uint32_t row) {
 /// How many particles of each body would be too far apart for new nodes; of all ranks.
 template <int D>
 std::vector<std::int64_t> count_parted(const Domain<D>& domain) {
-  std::vector<std::int64_t> counts(domain.bodies.size(), 0);
+  std::vector<std::int64_t> counts;
   const double most = most_cells_apart * domain.grid.cell_size;
-  for_each_that_flows(domain, [&](const Patch<D>& patch, const ParticlePool<D>& pool) {
-    const double density = domain.body_of(patch).initial_density;
-    std::int64_t& count = counts[static_cast<std::size_t>(patch.body)];
-    for (const std::uint32_t row : pool.rows(patch))
-      count += std::pow(pool.mass()[row] / density, 1.0 / D) * stretched(pool, row) > most;
-  });
-  domain.grid.partition.comm->all_sum(counts);
+  const auto is_far = [&](const Body<D>& body, const ParticlePool<D>& pool, std::uint32_t row) {
+    const double edge = std::pow(pool.mass()[row] / body.initial_density, 1.0 / D);
+    return edge * stretched(pool, row) > most;
+  };
+  count_that_flow(domain, counts, is_far);
   return counts;
 }
 
@@ -231,14 +210,15 @@ void renew_references(Simulation<D>& simulation) {
       std::ranges::none_of(domain.pools,
                            [](const ParticlePool<D>& pool) { return pool.flowed_before >= 0; }))
     return;
-  std::vector<std::int64_t>& flowed = simulation.flowed;
-  count_flowed(domain, strain, flowed);
-  const auto many = [&](const std::vector<std::int64_t>& counts, std::size_t b) {
-    return counts[b] > 0 && static_cast<double>(counts[b]) >=
-                                share_of_particles * static_cast<double>(domain.bodies[b].count);
+  // What has flowed to and fro is as it was.
+  const auto has_flowed = [&](const Body<D>&, const ParticlePool<D>& pool, std::uint32_t row) {
+    return flowed_since(pool, row) >= strain && narrowed(pool, row) >= least_squeezed;
   };
+  std::vector<std::int64_t>& flowed = simulation.flowed;
+  count_that_flow(domain, flowed, has_flowed);
   const auto is_due = [&](std::size_t b) {
-    return !domain.bodies[b].nodes_are_final && many(flowed, b);
+    const Body<D>& body = domain.bodies[b];
+    return !body.nodes_are_final && are_many(body, flowed[b]);
   };
   std::size_t due = 0;
   for (std::size_t b = 0; b < flowed.size(); ++b) due += is_due(b);
@@ -252,10 +232,10 @@ void renew_references(Simulation<D>& simulation) {
     if (!renewed[b]) continue;
     Body<D>& body = domain.bodies[b];
     const double share = static_cast<double>(parted[b]) / static_cast<double>(body.count);
-    const auto why = many(parted, b)       ? WhyNodesStay::parted
-                     : folded[b]           ? WhyNodesStay::folded
-                     : walls.comes_near(b) ? WhyNodesStay::near_wall
-                                           : WhyNodesStay::no;
+    const auto why = are_many(body, parted[b]) ? WhyNodesStay::parted
+                     : folded[b]               ? WhyNodesStay::folded
+                     : walls.comes_near(b)     ? WhyNodesStay::near_wall
+                                               : WhyNodesStay::no;
     if (why == WhyNodesStay::no) continue;
     renewed[b] = false;
     body.nodes_are_final = true;

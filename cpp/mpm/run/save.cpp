@@ -16,12 +16,12 @@ namespace {
 
 constexpr const char* other_version = "it was made by another version of mpm3dpp";
 constexpr const char* other_case = "it was made from another case";
-constexpr std::int64_t format = 24;  // raised whenever exchange() or what a value means changes
+constexpr std::int64_t format = 25;  // raised whenever exchange() or what a value means changes
 
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {
   stream.same(body.count, other_case);
-  stream(body.leaves, body.removed, body.renewals, body.nodes_are_final);
+  stream(body.leaves, body.removed, body.averages, body.renewals, body.nodes_are_final);
   StateStream::check(body.renewals >= 0, other_case);
   if (body.is_prescribed()) stream(body.motion->before, body.motion->now);
 }

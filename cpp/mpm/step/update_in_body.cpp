@@ -57,7 +57,7 @@ template <int W, int D, BasisModel B>
   const NodeStrides<D> stride(patch.shape);
   const LocalPosition<D> local_position(grid, pool);
   const T per_cell_size(1.0 / grid.cell_size);
-  AveragedWork<T, D> averaged(pool, material.averages_volume);
+  AveragedWork<T, D> averaged(pool, domain.body_of(patch).averages);
   StressSums& sums = domain.sums[p].stress;
   MaterialBlock<D> block;
   const auto flush = [&] {

@@ -22,8 +22,8 @@ class MaterialDamping(CaseModel):
         stiffness: beta of the damping in proportion to the stiffness [s], Rayleigh's: the viscous
             stress is beta times what the elastic moduli of the start make of the rate of strain,
             and a mode of the angular frequency w decays as exp(-beta w^2 t / 2). With
-            `volume_averaging` it is of changes of shape alone. It makes the time step shorter;
-            default zero.
+            `volume_averaging`, but for bodies with `frame = "material"`, it is of changes of shape
+            alone. It makes the time step shorter; default zero.
     """
 
     stiffness: Annotated[float, Quantity("s", ">= 0")] = 0.0

@@ -40,7 +40,9 @@ class Material(CaseModel):
         volume_averaging: whether all particles of a body in a cell take the mean of the changes of
             their volumes, and the nodes the mean of their pressures, so that nearly incompressible
             matter, also that which flows plastically, does not lock (Coombs et al. 2018). With
-            `frame = "material"` nodes get the pressure that they can tell, without its noise.
+            `frame = "material"` nodes get the pressure that they can tell, without its noise: there
+            it is the default for nearly incompressible matter (nu > 0.45), and for plastic matter
+            once one particle in a hundred of a body has flowed by 0.2 %.
         damping: in proportion to the stiffness; None for none.
     """
 
@@ -53,7 +55,7 @@ class Material(CaseModel):
     eos: AnyEos = None
     failure: AnyFailure = Field(default_factory=list)
     artificial_viscosity: Viscosity | None = None
-    volume_averaging: Flag = False
+    volume_averaging: Flag | None = None
     damping: MaterialDamping | None = None
 
     @classmethod
@@ -74,8 +76,8 @@ class Material(CaseModel):
             table["failure"] = {k: v for f in self.failure for k, v in f.table().items()}
         if self.artificial_viscosity is not None:
             table["artificial_viscosity"] = self.artificial_viscosity.table()
-        if self.volume_averaging:
-            table["volume_averaging"] = True
+        if self.volume_averaging is not None:
+            table["volume_averaging"] = self.volume_averaging
         if self.damping is not None:
             table["damping"] = self.damping.table()
         return table

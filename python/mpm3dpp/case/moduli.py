@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from mpm3dpp.base.frames import MATERIAL, UPDATED
+
 from .material import Material
 
 
@@ -28,12 +30,12 @@ def moduli_of(material: Material) -> Moduli | None:
     return None
 
 
-def damping_viscosity(material: Material) -> float:
+def damping_viscosity(material: Material, frame: str = UPDATED) -> float:
     """Return by what its damping, in proportion to the stiffness, resists pressure waves [Pa s].
 
-    With averaged volumes that is of the shape alone; see docs/theory/damping.md.
+    With volumes averaged over cells that is of the shape alone; see docs/theory/damping.md.
     """
-    if not material.volume_averaging:
+    if frame == MATERIAL or not material.volume_averaging:
         return material.beta * material.density * material.sound_speed() ** 2
     moduli = moduli_of(material)
     G = moduli.G if moduli else material.strength.parameters.get("G", 0.0)

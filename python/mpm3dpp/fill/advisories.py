@@ -122,7 +122,7 @@ def fastest(case: Case, bodies: Filled) -> float:
     for name, part in case.parts().items():
         material = case.material[part.material]
         c = 0.0 if case.is_rigid(name) else material.sound_speed()
-        q = damping_viscosity(material) / material.density / case.grid.cell_size
+        q = damping_viscosity(material, part.frame) / material.density / case.grid.cell_size
         sound[name] = q + float(np.hypot(q, c))
     found = 0.0
     for name, filled in bodies.parts.items():

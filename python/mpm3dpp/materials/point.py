@@ -24,7 +24,7 @@ def drive_point(
     eos: tuple[str, Mapping[str, float]] | None = None,
     failures: Sequence[tuple[str, Mapping[str, float], str]] = (),
     viscosity: tuple[float, float] = (0.0, 0.0),
-    volume_averaging: bool = False,
+    volume_averaging: bool | None = None,
     cell_size: float = 1.0,
     state: Mapping[str, float] | None = None,
 ) -> tuple[np.ndarray, list[str], list[str]]:

@@ -142,7 +142,8 @@ class SurfaceTwin {
     const bool deforms = given.kind == BodyKind::deformable;
     choice.strength = {"elastic", {{"E", given.E}, {"nu", given.nu}}};
     if (given.kind == BodyKind::rigid) choice.strength = {"rigid", {}};
-    const int material = add_material(*simulation, choice, deforms);
+    choice.in_body = deforms;
+    const int material = add_material(*simulation, choice);
     reference::SurfaceBody<D> surface;
     if (deforms) {
       kept.push_back({step});

@@ -62,7 +62,8 @@ struct Pair {
     choice.density = density;
     choice.strength = {"elastic", {{"E", E}, {"nu", nu}}};
     choice.volume_averaging = averages;
-    const int material = add_material(*simulation, choice, true);
+    choice.in_body = true;
+    const int material = add_material(*simulation, choice);
     add(material);
     add_a_load("pressure");
     add_a_load("traction");
@@ -249,7 +250,8 @@ void check_velocities(Report& report, BasisId basis) {
   MaterialChoice choice;
   choice.density = density;
   choice.strength = {"elastic", {{"E", E}, {"nu", nu}}};
-  const int material = add_material(simulation, choice, true);
+  choice.in_body = true;
+  const int material = add_material(simulation, choice);
   std::vector<double> x, v;
   for (int k = 0; k < 8 * 8 * (D == 3 ? 8 : 1); ++k) {
     const int index[] = {k % 8, k / 8 % 8, k / 64};
