@@ -95,17 +95,18 @@ void add_drive(nb::module_& m) {
 /// What matter a material is.
 void add_matter(nb::module_& m) {
   m.def(
-      "breaks_up",
+      "is_loose",
       [](double density, const std::string& strength, const Parameters& parameters,
          const std::optional<Named>& eos, const std::vector<NamedFailure>& failures,
          std::optional<bool> volume_averaging) {
         return make_material(choice_of(density, strength, parameters, eos, failures, {}, 0.0,
                                        volume_averaging))
-            .breaks_up();
+            .is_loose();
       },
       nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
       nb::arg("failures"), nb::arg("volume_averaging").none(),
-      "Whether particles of a material may part: it flows, is loose, can fail or spall");
+      "Whether neighbours among a material's particles are none for long: it flows, is loose or "
+      "spalls");
 
   m.def(
       "matter",

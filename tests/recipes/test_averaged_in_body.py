@@ -104,8 +104,7 @@ def test_a_uniform_pressure_is_left_as_it_is(dimension: int, basis: str) -> None
 ELASTIC = {"elastic": {"E": E, "nu": 0.3}}
 FIRM = {"j2": {"E": E, "nu": 0.3, "Y0": E}}
 SOFT = {"j2": {"E": E, "nu": 0.3, "Y0": 1e-4 * E}}
-RUBBER = {"elastic": {"E": E, "nu": 0.46}}
-GEL = {"neo_hookean": {"K": 20.0 * E, "G": E}}
+RUBBER = {"neo_hookean": {"K": 20.0 * E, "G": E}}
 
 
 def sheared(strength: dict[str, Any], dimension: int, **material: Any) -> np.ndarray:
@@ -127,18 +126,16 @@ def sheared(strength: dict[str, Any], dimension: int, **material: Any) -> np.nda
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-@pytest.mark.parametrize(
-    "strength", [ELASTIC, FIRM, SOFT, RUBBER, GEL], ids=lambda s: next(iter(s))
-)
+@pytest.mark.parametrize("strength", [ELASTIC, FIRM, SOFT, RUBBER], ids=lambda s: next(iter(s)))
 def test_what_is_averaged_by_default(strength: dict[str, Any], dimension: int) -> None:
-    """What hardly changes its volume; what yields once it does, and not what could."""
+    """What yields, once it does, and not what could; no rubber, which would lose its energy."""
     default, never, always = (
         sheared(strength, dimension, **given)
         for given in ({}, {"volume_averaging": False}, {"volume_averaging": True})
     )
-    assert (default == never).all() == (strength in (ELASTIC, FIRM))
-    assert (default == always).all() == (strength in (RUBBER, GEL))
+    assert (default == never).all() == (strength is not SOFT)
     assert not (never == always).all()
+    assert not (default == always).all()
 
 
 def test_viscous_pressure_acts_until_a_body_flows() -> None:

@@ -56,7 +56,10 @@ def shares(
     return kept_of(case)
 
 
-@pytest.mark.parametrize(("speed", "model"), [(0.1, "elastic"), (0.2, "neo_hookean")])
+@pytest.mark.parametrize(
+    ("speed", "model"),
+    [(0.1, "elastic"), pytest.param(0.2, "neo_hookean", marks=pytest.mark.slow)],
+)
 def test_balls_that_hit_fast(speed: float, model: str) -> None:
     """Balls of 4 cells a radius keep their energy to .3 %: none is made, .11 % taken at most."""
 

@@ -108,7 +108,15 @@ def test_a_block_goes_on_over_a_level_slab():
     assert way(simulation, 0.0, 0.15) == pytest.approx(0.003, rel=5e-3)
 
 
-@pytest.mark.parametrize("size", [[0.04, 0.02], [0.0437, 0.0213], [0.02, 0.01, 0.02]], ids=str)
+@pytest.mark.parametrize(
+    "size",
+    [
+        [0.04, 0.02],
+        [0.0437, 0.0213],
+        pytest.param([0.02, 0.01, 0.02], marks=pytest.mark.slow),
+    ],
+    ids=str,
+)
 def test_a_block_slides_down_with_friction(size):
     """With the law's acceleration, g (sin 20 - .3 cos 20), as it is after the start: while weight
     comes on the block hardly rubs."""

@@ -65,7 +65,7 @@ def test_the_row_of_springs_has_the_limits_of_the_theory() -> None:
 
 
 OBLIQUE = [("wall", 0.3, 0.15, psi) for psi in (0.5, 1.0, 2.0, 3.0)]
-OBLIQUE += [("balls", 0.05, 0.1, psi) for psi in (1.0, 3.0)]
+OBLIQUE += [pytest.param("balls", 0.05, 0.1, psi, marks=pytest.mark.slow) for psi in (1.0, 3.0)]
 
 
 @pytest.mark.parametrize(("against", "friction", "circle", "psi"), OBLIQUE)

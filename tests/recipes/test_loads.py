@@ -251,7 +251,13 @@ def mean_state(case: Case, after: float, names: tuple[str, ...]) -> list[np.ndar
     return [s / count for s in sums]
 
 
-@pytest.mark.parametrize(("basis", "frame"), BASES_IN_FRAMES)
+@pytest.mark.parametrize(
+    ("basis", "frame"),
+    [
+        pytest.param(*one, marks=[pytest.mark.slow] if one == ("gimp", "material") else [])
+        for one in BASES_IN_FRAMES
+    ],
+)
 def test_a_ring_under_pressure_from_within(basis: str, frame: str) -> None:
     """Lame's solution in plane strain (Timoshenko & Goodier 1970, art. 28), radii 10 and 20 cells.
 

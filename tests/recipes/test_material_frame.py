@@ -72,7 +72,7 @@ def test_a_rod_twists_to_and_fro() -> None:
     assert np.abs(energies(columns) - 1.0).max() < 0.01
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_a_grain_spins_on(dimension: int) -> None:
     """Of four cells a radius, 3.2 turns: the updated frame makes 1e-3 of its energy."""
     shape = {("disc", "sphere")[dimension - 2]: {"centre": [0.0] * dimension, "radius": 4 * CELL}}

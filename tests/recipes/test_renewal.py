@@ -14,7 +14,7 @@ from mpm3dpp import Case, Simulation, _core
 from same_bits import check_same_bits
 from worlds import check_worlds
 
-AVERAGES = "volume_averaging = true", "volume_averaging = false"
+AVERAGES = ("volume_averaging = true",)
 
 METALS = """
 [grid]

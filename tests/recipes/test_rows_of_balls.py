@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 
 from mpm3dpp import Case, Simulation, _core
@@ -60,6 +61,7 @@ def chain_of_hertz(count: int, end: float) -> tuple[np.ndarray, np.ndarray]:
     return found.t, found.y[count:]
 
 
+@pytest.mark.slow
 def test_five_balls_in_a_row() -> None:
     """Speeds and times of the wave of Hertz's chain to 5 %, the last speed to 1 %; ten of 8 cells a
     radius: 3 and 1.2 %, .984 of .986 for the last."""

@@ -5,6 +5,10 @@
 
 namespace mpm {
 
+/// By how much what has failed may be squeezed before it bears nothing; steps would get shorter by
+/// as much.
+constexpr double most_squeezed = 4.0;
+
 /// A particle stays failed; of several models that it fails by, the strongest action is done.
 /// `failures` is what for_each_failure() takes.
 template <class T, int D, int N, class Failures>
@@ -47,13 +51,19 @@ MPM_FLATTEN MPM_HD void apply_failures(const MaterialView& material, const Failu
     T kept = select(failed >= T(static_cast<double>(FailureAction::no_tension)), min(mean, T(0.0)),
                     mean);
     kept = select(failed >= gone, T(0.0), kept);
+    const StepKinematics<T, D> kinematics(group, block, columns, material.density, settings);
+    // Where nodes lie in the body they still pull at it: it bears what presses it below its volume,
+    // and nothing once it is crushed.
+    if (settings.squeezed)
+      kept = select((failed > T(0.0)) & ((kinematics.volume_change.J >= T(1.0)) |
+                                         (group.read(settings.squeezed) > T(most_squeezed))),
+                    T(0.0), kept);
     const T deviator = select(failed > T(0.0), T(0.0), T(1.0));
     const Sym<T, D> left =
         Sym<T, D>::isotropic(kept) + deviator * (stress - Sym<T, D>::isotropic(mean));
     // A torn particle that gapes is loose matter: no waves run in it, and closing it costs nothing.
     const auto separated =
         (failed >= T(static_cast<double>(FailureAction::no_tension))) & (kept >= T(0.0));
-    const StepKinematics<T, D> kinematics(group, block, columns, material.density, settings);
     // What has failed has no deviator to flow with: the model, which begins at none in every step,
     // would let it yield again and again.
     writer.template add<true>(group, kinematics, group.read_stress(columns),

@@ -112,17 +112,6 @@ double shear_modulus(const Material& material) {
 
 namespace {
 
-/// Above this ratio of Poisson matter is nearly incompressible: pressures of bodies on nodes of
-/// their own are mostly noise.
-constexpr double nearly_incompressible = 0.45;
-
-/// Poisson's ratio at small strain.
-double poissons_ratio(const Material& material) {
-  const double c = sound_speed_at_start(material), G = shear_modulus(material);
-  const double M = material.density * c * c;
-  return M > G ? (M - 2.0 * G) / (2.0 * (M - G)) : 0.0;
-}
-
 void choose_averaging(Material& material, const MaterialChoice& choice) {
   const bool wanted = choice.volume_averaging.value_or(false);
   if (wanted && material.moves_as_one())
@@ -133,9 +122,7 @@ void choose_averaging(Material& material, const MaterialChoice& choice) {
                                 " takes no volume_averaging: its front is sharper than a cell");
   material.averages_volume = wanted;
   if (choice.volume_averaging || !choice.in_body) return;
-  const bool always = poissons_ratio(material) > nearly_incompressible;
-  material.averages_volume = always || material.yields();
-  material.once_it_flows = !always;
+  material.averages_volume = material.once_it_flows = material.yields();
 }
 
 }  // namespace

@@ -132,20 +132,24 @@ struct Material {
   bool flows() const {
     return std::visit([]<class M>(const M&) { return requires { M::flows; }; }, strength);
   }
-  /// May its particles part: as it flows, is loose, can fail or spall?
-  bool breaks_up() const {
-    return flows() || !failures.empty() || bounds.tension < unbounded ||
+  /// Are neighbours no neighbours for long: as it flows, is loose or spalls?
+  bool is_loose() const {
+    return flows() || bounds.tension < unbounded ||
            std::visit([]<class M>(const M&) { return requires { M::breaks_up; }; }, strength);
   }
+  /// May its particles part: as it is loose or can fail?
+  bool breaks_up() const { return is_loose() || !failures.empty(); }
   /// A gas fills any volume, and so do products of detonation.
   Matter matter() const {
     if (!flows()) return Matter::solid;
     const bool gas = eos && std::visit([](const auto& model) { return model.is_gas(); }, *eos);
     return gas ? Matter::gas : Matter::liquid;
   }
-  bool erodes() const {
+  bool erodes() const { return does(FailureAction::erode); }
+  /// May failure do that?
+  bool does(FailureAction action) const {
     return std::any_of(failures.begin(), failures.end(),
-                       [](const Failing& f) { return f.action == FailureAction::erode; });
+                       [&](const Failing& f) { return f.action == action; });
   }
 };
 
@@ -168,8 +172,7 @@ struct MaterialChoice {
   std::vector<FailureChoice> failures;
   BulkViscosity viscosity{0.0, 0.0};  // none
   double damping = 0.0;               // beta [s]
-  // If nothing is said, of bodies on nodes of their own: always if they hardly change their volume,
-  // of those that flow plastically once they do.
+  // If nothing is said, of bodies on nodes of their own that flow plastically, once they do.
   std::optional<bool> volume_averaging = false;
   bool in_body = false;  // of bodies on nodes of their own
 };

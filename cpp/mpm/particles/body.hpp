@@ -64,6 +64,7 @@ struct Body {
   std::unique_ptr<PrescribedMotion> motion;  // none for the thousands of bodies that are free
   double pressure_impedance = 0.0, shear_impedance = 0.0;  // rho c of the start [kg/(m^2 s)]
   bool averages = false;         // its pressures on its own nodes (step/average_in_body.cpp)
+  std::int64_t failed = 0;       // of its particles, with such nodes (run/look_for_failed.hpp)
   int renewals = 0;              // how often nodes have been laid anew into it ...
   bool nodes_are_final = false;  // ... and no more (WhyNodesStay)
   std::size_t moved = 0;         // changes of cell since its rows were last sorted

@@ -130,6 +130,7 @@ ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid,
   if (transfer.reference) {
     pool.reference = pool.columns.add("reference_position", "m", D);
     pool.deformation = pool.columns.add("deformation_gradient", "1", D * D);
+    if (pool.at.failed >= 0) pool.opened = pool.columns.add("opened", "1", 1);
     const std::vector<ColumnInfo>& known = pool.columns.infos();
     const auto flowed = std::ranges::find(known, "plastic_strain", &ColumnInfo::name);
     if (flowed != known.end()) {

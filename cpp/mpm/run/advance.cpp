@@ -6,8 +6,10 @@
 #include <stdexcept>
 
 #include "mpm/comm/all_sums.hpp"
+#include "mpm/run/average_what_flows.hpp"
 #include "mpm/run/coarsen_cells.hpp"
 #include "mpm/run/find_failure.hpp"
+#include "mpm/run/look_for_failed.hpp"
 #include "mpm/run/measures.hpp"
 #include "mpm/run/renew_reference.hpp"
 #include "mpm/run/settle.hpp"
@@ -107,6 +109,7 @@ std::int64_t advance(Simulation<D>& simulation, std::int64_t max_steps, double e
     domain.time_step = step;
     make_step(simulation, step == left ? next_stop : domain.time + step);
     ++made;
+    if (!simulation.failure) look_for_failed(simulation);
     // All ranks after the same step.
     const bool told = stop != nullptr && stop->load(std::memory_order_relaxed);
     if (any_of_all(comm, told)) break;

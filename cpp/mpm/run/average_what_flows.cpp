@@ -14,7 +14,7 @@ constexpr double proof_strain = 0.002;
 template <int D>
 bool waits(const Domain<D>& domain, const Body<D>& body) {
   const Material& material = domain.materials[static_cast<std::size_t>(body.material)];
-  return body.keeps_nodes() && material.averages_volume && !body.averages;
+  return body.keeps_nodes() && material.averages_volume && !body.averages && body.failed == 0;
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace mpm {
 
 /// Begin with the bodies of which a share of the particles has flowed beyond the proof strain;
-/// between two steps, by all ranks.
+/// between two steps, by all ranks. Not those of which particles have failed.
 template <int D>
 void average_what_flows(Simulation<D>& simulation);
 

@@ -25,14 +25,15 @@ enum class NoteKind {
   sparse,
   sparse_gas,
   deep,
-  nodes_kept
+  nodes_kept,
+  failed
 };
 /// Why nodes are not laid anew into a body that has flowed (renew_reference.hpp).
-enum class WhyNodesStay { no, parted, folded, near_wall };
+enum class WhyNodesStay { no, parted, folded, near_wall, failed };
 inline constexpr std::array note_names = {
-    "time step",  "energy of a step", "load",      "outside walls", "volume",
-    "left box",   "crowded node",     "unsettled", "gas volume",    "sparse particles",
-    "sparse gas", "deep surface",     "nodes kept"};
+    "time step",  "energy of a step", "load",       "outside walls", "volume",
+    "left box",   "crowded node",     "unsettled",  "gas volume",    "sparse particles",
+    "sparse gas", "deep surface",     "nodes kept", "failed"};
 
 /// Told once for each kind and body (the first of its group), then counted. Trivially copyable, so
 /// that a checkpoint holds it.

@@ -232,10 +232,11 @@ void renew_references(Simulation<D>& simulation) {
     if (!renewed[b]) continue;
     Body<D>& body = domain.bodies[b];
     const double share = static_cast<double>(parted[b]) / static_cast<double>(body.count);
-    const auto why = are_many(body, parted[b]) ? WhyNodesStay::parted
-                     : folded[b]               ? WhyNodesStay::folded
-                     : walls.comes_near(b)     ? WhyNodesStay::near_wall
-                                               : WhyNodesStay::no;
+    const auto why = body.failed > 0             ? WhyNodesStay::failed
+                     : are_many(body, parted[b]) ? WhyNodesStay::parted
+                     : folded[b]                 ? WhyNodesStay::folded
+                     : walls.comes_near(b)       ? WhyNodesStay::near_wall
+                                                 : WhyNodesStay::no;
     if (why == WhyNodesStay::no) continue;
     renewed[b] = false;
     body.nodes_are_final = true;

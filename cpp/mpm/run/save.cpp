@@ -21,8 +21,9 @@ constexpr std::int64_t format = 25;  // raised whenever exchange() or what a val
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {
   stream.same(body.count, other_case);
-  stream(body.leaves, body.removed, body.averages, body.renewals, body.nodes_are_final);
-  StateStream::check(body.renewals >= 0, other_case);
+  stream(body.leaves, body.removed, body.averages, body.failed, body.renewals,
+         body.nodes_are_final);
+  StateStream::check(body.renewals >= 0 && body.failed >= 0, other_case);
   if (body.is_prescribed()) stream(body.motion->before, body.motion->now);
 }
 

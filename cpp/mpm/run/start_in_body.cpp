@@ -160,9 +160,11 @@ void check_frame(bool holds, const char* sentence) {
 
 void check_in_body(const Material& material) {
   check_frame(!material.moves_as_one(), "a rigid body, which does not deform");
-  check_frame(!material.breaks_up(),
-              "a material that flows or breaks: fluids, gases, explosives, loose soils, failure "
-              "models and spall strengths need frame = \"updated\"");
+  check_frame(!material.is_loose(),
+              "a material that flows or spalls: fluids, gases, explosives, loose soils and spall "
+              "strengths need frame = \"updated\"");
+  check_frame(!material.does(FailureAction::erode) && !material.does(FailureAction::no_shear),
+              "failure that erodes or leaves a liquid: give it the action \"no_tension\"");
 }
 
 template <int D>

@@ -197,23 +197,28 @@ void check_state(const Domain<D>& domain, Surfaces<D>& surfaces) {
   }
 }
 
-/// Where nodes were laid anew into bodies points are not as the case has them.
+/// Where nodes were laid anew into bodies, or some of these has failed, points are not as the case
+/// has them.
 template <int D>
 void exchange_points(Domain<D>& domain, StateStream& stream) {
   const auto is_renewed = [](const Body<D>& body) { return body.renewals > 0; };
-  if (std::ranges::none_of(domain.bodies, is_renewed)) return;
+  const auto has_failed = [](const Body<D>& body) { return body.failed > 0; };
+  const bool others = std::ranges::any_of(domain.bodies, has_failed);
+  if (!others) stream.same(domain.surfaces.points.size(), "it was made from another case");
+  if (!domain.surfaces.exist()) return;
+  if (!others && std::ranges::none_of(domain.bodies, is_renewed)) return;
   const Surfaces<D>& surfaces = domain.surfaces;
   std::vector<LaidPoint<D>> points;
   if (!stream.restores())
     points = laid_points(domain, std::vector<bool>(domain.bodies.size(), false));
   stream.vector(points);
   if (!stream.restores()) return;
-  StateStream::check(points.size() == surfaces.points.size(), damaged);
+  StateStream::check(others || points.size() == surfaces.points.size(), damaged);
   for (std::uint32_t k = 0; k < points.size(); ++k) {
-    const auto& [given, place, at_start] = points[k];
-    bool fine = std::abs(norm(given.normal) - 1.0) < 1e-9 && given.number == k &&
-                given.body == part_of_point(surfaces, k).body &&
-                given.particle < domain.body_at(given.body).count && given.face >= 0;
+    const auto& [given, place, at_start, failed] = points[k];
+    bool fine = std::abs(norm(given.normal) - 1.0) < 1e-9 && given.number == k && given.body >= 0 &&
+                std::cmp_less(given.body, domain.bodies.size()) &&
+                given.particle < domain.body_at(given.body).count && given.face >= no_face;
     for (const Vec<double, D>& v : {given.offset, given.normal, place, at_start})
       fine = fine && is_finite(v);
     for (const double area : {given.area, given.felt_area})
@@ -261,9 +266,8 @@ void exchange_state(const Domain<D>& domain, Surfaces<D>& surfaces, StateStream&
 template <int D>
 void exchange_surfaces(Domain<D>& domain, StateStream& stream) {
   Surfaces<D>& surfaces = domain.surfaces;
-  stream.same(surfaces.points.size(), "it was made from another case");
-  if (!surfaces.exist()) return;
   exchange_points(domain, stream);
+  if (!surfaces.exist()) return;
   if (!stream.restores()) {
     if (stream.comm().alone()) {
       exchange_state(domain, surfaces, stream);

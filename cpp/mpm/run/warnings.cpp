@@ -80,6 +80,8 @@ std::string nodes_stay(const std::string& whose, double per_cent, double why) {
     text << "as " << per_cent << " % of its particles would be more than 1.5 cells apart";
   else if (why == static_cast<double>(WhyNodesStay::folded))
     text << "as it is folded, and they would weld its faces";
+  else if (why == static_cast<double>(WhyNodesStay::failed))
+    text << "as particles of it have failed, and they would weld its pieces";
   else
     text << "as it is near a wall of the box that is slip or fixed, on which it did not begin";
   text << ": its steps get shorter, its answers no worse";
@@ -137,6 +139,11 @@ std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded
     case NoteKind::nodes_kept:
       text << nodes_stay(whose, per_cent, n.value);
       break;
+    case NoteKind::failed:
+      text << per_cent << " % of the particles of " << whose
+           << " have failed, which only walls and their own pressure stop where nodes lie in the "
+              "body; for what debris does give frame = \"updated\"";
+      break;
     case NoteKind::unsettled:
       text << "run.settle.longest was over before forces balanced: those out of balance were "
            << n.value << " of those applied, more than run.settle.ratio = " << n.against
@@ -175,7 +182,8 @@ std::vector<Warning> warnings(const Simulation<D>& simulation) {
     w.position = n.position;
     w.share = n.share;
     w.count = n.count;
-    w.is_error = n.kind != NoteKind::left_box && n.kind != NoteKind::nodes_kept;
+    const bool of_no_place = n.kind == NoteKind::nodes_kept || n.kind == NoteKind::failed;
+    w.is_error = n.kind != NoteKind::left_box && !of_no_place;
     const bool loaded =
         std::ranges::any_of(domain.loads, [&](const auto& load) { return load.body == n.body; });
     std::ostringstream text;
@@ -183,7 +191,7 @@ std::vector<Warning> warnings(const Simulation<D>& simulation) {
     text << what_and_remedy(n, group_name(domain, n.group), loaded,
                             domain.body_at(n.body).keeps_nodes())
          << " (";
-    if (n.kind != NoteKind::unsettled && n.kind != NoteKind::nodes_kept) {  // of no place
+    if (n.kind != NoteKind::unsettled && !of_no_place) {
       text << "body \"" << domain.body_at(n.body).name << "\", ";
       if (n.particle >= 0) text << "particle " << n.particle << ", ";
       text << "at";

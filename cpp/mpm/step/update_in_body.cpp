@@ -41,6 +41,18 @@ class AveragedWork {
   T not_done_ = T(0.0);
 };
 
+/// Between the pieces of what has failed nodes go anywhere: what they would turn inside out stays
+/// as it was, and bears nothing.
+template <class T, int D, class Rows>
+void keep_upright(const ParticlePool<D>& pool, const Rows& rows, const Mat<T, D>& before,
+                  Mat<T, D>& F) {
+  constexpr double least_volume = 0.05;
+  const T failed = load(pool.columns.component(pool.at.failed), rows);
+  const auto stays = (failed > T(0.0)) & (determinant(F) < T(least_volume));
+  unrolled<D * D>(
+      [&](auto k) { F[k / D][k % D] = select(stays, before[k / D][k % D], F[k / D][k % D]); });
+}
+
 template <int W, int D, BasisModel B>
 [[gnu::noinline, gnu::flatten]] void update_patch(Domain<D>& domain, std::size_t p,
                                                   const B& basis) {
@@ -77,6 +89,10 @@ template <int W, int D, BasisModel B>
         constexpr int i = k / D, j = k % D;
         before[i][j] = load(pool.deformation_part(k), rows);
         F[i][j] = fma(per_cell_size, gradients[i][j], T(i == j ? 1.0 : 0.0));
+      });
+      if (pool.at.failed >= 0) keep_upright(pool, rows, before, F);
+      unrolled<D * D>([&](auto k) {
+        constexpr int i = k / D, j = k % D;
         change[i][j] = F[i][j] - before[i][j];
         store(pool.deformation_part(k), rows, F[i][j]);
       });

@@ -120,7 +120,7 @@ void find_near(const Domain<D>& domain, const PointBoxes<D>& boxes, const Folded
   part.near.clear();
   part.near_of.clear();
   for (std::uint32_t c = part.first_point; c < part.first_point + part.point_count; ++c) {
-    if (!(surfaces.points[c].area > 0.0)) continue;
+    if (!(surfaces.points[c].area > 0.0) || surfaces.points[c].face == no_face) continue;
     const Vec<double, D> here = surfaces.places[c];
     NearPoints near{c, -1, 0, 0, 0.0};
     std::int32_t face = 0;

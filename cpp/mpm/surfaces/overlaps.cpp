@@ -8,6 +8,7 @@
 #include "mpm/surfaces/law.hpp"
 #include "mpm/surfaces/levelled.hpp"
 #include "mpm/surfaces/mirrored.hpp"
+#include "mpm/surfaces/renew_points.hpp"
 
 namespace mpm {
 namespace {
@@ -248,6 +249,39 @@ void set_back_overlaps(Domain<D>& domain) {
   }
 }
 
+template <int D>
+void set_back_more(Domain<D>& domain, const std::vector<KeptOfContact<double>>& before) {
+  Surfaces<D>& surfaces = domain.surfaces;
+  const double e = surfaces.spacing, least_sum = sum_at_overlap(domain, 0.0), seen = 1e-6 * e;
+  std::vector<KeptOfContact<double>> more;
+  for (SurfacePart<D>& part : surfaces.parts) {
+    if (part.foreign) continue;
+    std::size_t next = 0;
+    for (std::uint32_t c = part.first_point; c < part.first_point + part.point_count; ++c) {
+      const auto look = [&](Opposite opposite, double overlap) {
+        const double* const was = find_kept(before, first_number(surfaces, c), opposite);
+        overlap -= set_back_of(surfaces, c, opposite) + std::max(was ? *was : 0.0, 0.0);
+        if (overlap > seen) more.push_back({c, opposite, overlap});
+      };
+      if (!part.as_one && surfaces.points[c].area > 0.0)
+        for_each_wall(domain, surfaces.places[c], 0.0,
+                      [&](Opposite face, double overlap, const auto&) { look(face, overlap); });
+      for_each_body(domain, part, c, least_sum, next, part.face_sums, [&](const FacesNear& all) {
+        const Opposite body = all.faces.front().body;
+        const Levelled<D>* const levelled = find_kept(part.levelled, c, body);
+        look(body, e * (1.0 - SurfacePoint<D>(all.sum).zeta) + (levelled ? levelled->by : 0.0));
+      });
+    }
+  }
+  for (const KeptOfContact<double>& one : more) {
+    double* const known = find_kept(surfaces.set_back, one.point, one.opposite);
+    if (known) *known += one.value;
+    if (known) continue;
+    surfaces.set_back.push_back(one);
+    std::ranges::inplace_merge(surfaces.set_back, surfaces.set_back.end() - 1, std::less<>{});
+  }
+}
+
 template void find_overlaps<2>(const Domain<2>&, SurfacePart<2>&);
 template void find_overlaps<3>(const Domain<3>&, SurfacePart<3>&);
 template void for_each_near_surface<2>(const Domain<2>&, const SurfacePart<2>&,
@@ -256,5 +290,7 @@ template void for_each_near_surface<3>(const Domain<3>&, const SurfacePart<3>&,
                                        const std::function<void(const NearPoints&, double)>&);
 template void set_back_overlaps<2>(Domain<2>&);
 template void set_back_overlaps<3>(Domain<3>&);
+template void set_back_more<2>(Domain<2>&, const std::vector<KeptOfContact<double>>&);
+template void set_back_more<3>(Domain<3>&, const std::vector<KeptOfContact<double>>&);
 
 }  // namespace mpm

@@ -20,4 +20,10 @@ void for_each_near_surface(const Domain<D>& domain, const SurfacePart<D>& part,
 template <int D>
 void set_back_overlaps(Domain<D>& domain);
 
+/// The surfaces of points that overlap more of a body or a face of the box than before, as they
+/// have been uncovered there, are set back by that: no spring begins pressed. `before`: overlaps by
+/// the first numbers of points, sorted, of all ranks.
+template <int D>
+void set_back_more(Domain<D>& domain, const std::vector<KeptOfContact<double>>& before);
+
 }  // namespace mpm

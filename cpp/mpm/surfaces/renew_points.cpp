@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "mpm/comm/all_sums.hpp"
+#include "mpm/surfaces/boxes_of_bodies.hpp"
 #include "mpm/surfaces/folds.hpp"
 #include "mpm/surfaces/host_motion.hpp"
 #include "mpm/surfaces/near_points.hpp"
@@ -66,8 +66,11 @@ std::vector<LaidPoint<D>> laid_points(Domain<D>& domain, const std::vector<bool>
       laid.given = {part.body,       0,          point.surface.away,       point.normal, point.area,
                     point.felt_area, point.face, first_number(surfaces, c)};
       // Those of a body that does not deform go with all of it.
-      if (!part.as_one)
-        laid.given.particle = domain.pool_of(domain.body_at(part.body)).id[host.row];
+      if (!part.as_one) {
+        const ParticlePool<D>& pool = domain.pool_of(domain.body_at(part.body));
+        laid.given.particle = pool.id[host.row];
+        laid.failed = pool.opened >= 0 && pool.columns.component(pool.opened)[host.row] > 0.0;
+      }
       if (deformed) {
         const HostBefore<D> before(domain, host);
         laid.given.offset = before.away(point.surface);
@@ -125,6 +128,25 @@ void RenewedPoints<D>::keep_memory(Domain<D>& domain, const std::vector<bool>& r
   entries_of_all(comm, on_hosts_);
   entries_of_all(comm, from_walls_);
   std::ranges::sort(from_walls_, {}, &FromWalls<D>::part);
+}
+
+template <int D>
+void RenewedPoints<D>::uncover(Domain<D>& domain, const std::vector<LaidPoint<D>>& more) {
+  std::vector<bool> gone(points_.size(), false);
+  for (LaidPoint<D>& point : points_) {
+    if (!point.failed) continue;
+    point.given.face = no_face;
+    point.given.felt_area = 0.0;
+    gone[point.given.number] = true;
+  }
+  std::erase_if(domain.surfaces.bonds, [&](const Bond<D>& bond) {
+    return gone[first_number(domain.surfaces, bond.first)] ||
+           gone[first_number(domain.surfaces, bond.second)];
+  });
+  for (const LaidPoint<D>& point : more) {
+    points_.push_back(point);
+    points_.back().given.number = static_cast<std::uint32_t>(points_.size() - 1);
+  }
 }
 
 template <int D>
@@ -208,19 +230,13 @@ std::vector<std::uint32_t> lay_points(Domain<D>& domain, const std::vector<LaidP
 template <int D>
 std::vector<bool> near_themselves(Domain<D>& domain, const std::vector<bool>& bodies) {
   const double h = domain.grid.cell_size, reach = 3.0 * h + domain.surfaces.spacing;
-  // In boxes of that size, with the boxes around.
-  std::map<std::pair<int, Index<D>>, std::vector<const LaidPoint<D>*>> boxes;
   const std::vector<LaidPoint<D>> points = laid_points(domain, bodies);
-  const auto box_of = [&](const LaidPoint<D>& point) {
-    Index<D> box;
-    for (int a = 0; a < D; ++a)
-      box[static_cast<std::size_t>(a)] =
-          static_cast<std::int32_t>(std::floor(point.place[a] / reach));
-    return box;
+  const auto is_meant = [&](const LaidPoint<D>& point) {
+    return bodies[static_cast<std::size_t>(point.given.body)] && point.given.area > 0.0;
   };
+  BoxesOfBodies<D, LaidPoint<D>> boxes(reach);
   for (const LaidPoint<D>& point : points)
-    if (bodies[static_cast<std::size_t>(point.given.body)] && point.given.area > 0.0)
-      boxes[{point.given.body, box_of(point)}].push_back(&point);
+    if (is_meant(point)) boxes.add(point.given.body, point.place, point);
   const auto look_at_each_other = [&](const LaidPoint<D>& c, const LaidPoint<D>& q) {
     const Vec<double, D> way = q.place - c.place, in_body = q.at_start - c.at_start;
     return dot(way, way) < reach * reach &&
@@ -229,19 +245,10 @@ std::vector<bool> near_themselves(Domain<D>& domain, const std::vector<bool>& bo
            -dot(way, q.given.normal) > facing * norm(way);
   };
   std::vector<bool> found(bodies.size(), false);
-  for (const auto& [key, own] : boxes) {
-    const auto body = key.first;
-    Index<D> low = key.second, high = low;
-    for (std::size_t a = 0; a < D; ++a) {
-      low[a] -= 1;
-      high[a] += 1;
-    }
-    for_each_index<D>(low, high, [&](const Index<D>& beside) {
-      const auto others = boxes.find({body, beside});
-      if (others == boxes.end()) return;
-      for (const LaidPoint<D>* c : own)
-        for (const LaidPoint<D>* q : others->second)
-          if (look_at_each_other(*c, *q)) found[static_cast<std::size_t>(body)] = true;
+  for (const LaidPoint<D>& c : points) {
+    if (!is_meant(c)) continue;
+    boxes.for_each_near(c.given.body, c.place, [&](const LaidPoint<D>& q) {
+      if (look_at_each_other(c, q)) found[static_cast<std::size_t>(c.given.body)] = true;
     });
   }
   return found;

@@ -12,8 +12,9 @@ namespace mpm {
 /// A contact point with what goes along with it.
 template <int D>
 struct LaidPoint {
-  GivenPoint<D> given;  // with its number at the start
+  GivenPoint<D> given;  // with its number, at the start or as it came
   Vec<double, D> place, at_start;
+  bool failed = false;  // its host has
 };
 
 /// What a part gets from walls in the coming step.
@@ -30,6 +31,9 @@ class RenewedPoints {
  public:
   /// What is known of them; bodies are `renewed` by what deforms them now. All ranks together.
   RenewedPoints(Domain<D>& domain, const std::vector<bool>& renewed);
+  /// Points of hosts that have failed are no surface any more, and others come: all ranks give the
+  /// same.
+  void uncover(Domain<D>& domain, const std::vector<LaidPoint<D>>& more);
   /// Parts anew, once lists and nodes are. All ranks together.
   void lay(Domain<D>& domain);
 

@@ -25,6 +25,10 @@
 
 namespace mpm {
 
+/// The face of points whose hosts have failed (uncover.hpp): these are no surface of the body, and
+/// only walls stop them.
+constexpr std::int32_t no_face = -1;
+
 /// A contact point as it is given, before its host has a row.
 template <int D>
 struct GivenPoint {
@@ -34,14 +38,14 @@ struct GivenPoint {
   Vec<double, D> normal;       // out of the body, of unit length
   double area = 0.0;           // that it pushes for [m^2; in 2D m times 1 m]
   double felt_area = 0.0;      // by which others feel it: of its share of its face [the same]
-  std::int32_t face = 0;       // of its body
+  std::int32_t face = 0;       // of its body, or no_face
   std::uint32_t number = 0;    // as it was given, while bonds are made
 };
 
 template <int D>
 struct ContactPoint {
   std::uint32_t host = 0;
-  std::int32_t face = 0;   // of its body
+  std::int32_t face = 0;   // of its body, or no_face
   PlaceAtHost<D> surface;  // its place on the surface
   Vec<double, D> normal;   // out of the body at the start
   double area = 0.0;       // that it pushes for [m^2; in 2D m times 1 m]

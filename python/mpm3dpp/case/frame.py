@@ -86,26 +86,29 @@ def _of_body(case: Case, name: str) -> Iterator[tuple[str, str]]:
     if case.is_rigid(name):
         yield "does not go with a body that does not deform", "remove frame"
     material = case.material[part.material]
-    if _core.breaks_up(**material.for_core()):
-        yield _of_what_breaks(material, f"material.{part.material}")
+    key = f"material.{part.material}"
+    if _core.is_loose(**material.for_core()):
+        yield _of_what_is_loose(material, key)
+    for failure in material.failure:
+        if failure.action != "no_tension":
+            rule = f'does not go with {key}.failure whose action is "{failure.action}"'
+            yield rule, f'{updated}, or give {key}.failure.{failure.model} action = "no_tension"'
     moves = any(part.velocity) or any(part.angular_velocity)
     if case.run.settle is not None and moves:
         rule = "does not go with run.settle yet where the body has a velocity at the start"
         yield rule, updated
 
 
-def _of_what_breaks(material: Material, key: str) -> tuple[str, str]:
-    """Return rule and remedy of a material that flows or breaks, by the model that makes it so."""
+def _of_what_is_loose(material: Material, key: str) -> tuple[str, str]:
+    """Return rule and remedy of a material that flows or spalls, by the model that makes it so."""
     updated, what, without = f'give frame = "{UPDATED}"', "", ""
     eos = material.eos
-    if material.failure:
-        what, without = f"its failure model {material.failure[0].model}", f"leave {key}.failure out"
-    elif eos is not None and eos.parameters.get("spall_strength"):
+    if eos is not None and eos.parameters.get("spall_strength"):
         what = "the spall_strength of its equation of state"
         without = f"give {key}.eos.{eos.model}.spall_strength = 0 if it does not spall"
     else:
         what = f"its strength {material.strength.model}"
-    rule = f"does not go with {key}, which flows or breaks by {what}: neighbours stay neighbours"
+    rule = f"does not go with {key}, which flows or spalls by {what}: neighbours stay neighbours"
     return f"{rule} there", f"{updated}, or {without}" if without else updated
 
 

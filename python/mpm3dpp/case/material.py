@@ -41,8 +41,8 @@ class Material(CaseModel):
             their volumes, and the nodes the mean of their pressures, so that nearly incompressible
             matter, also that which flows plastically, does not lock (Coombs et al. 2018). With
             `frame = "material"` nodes get the pressure that they can tell, without its noise: there
-            it is the default for nearly incompressible matter (nu > 0.45), and for plastic matter
-            once one particle in a hundred of a body has flowed by 0.2 %.
+            it is the default for plastic matter once one particle in a hundred of a body has flowed
+            by 0.2 %.
         damping: in proportion to the stiffness; None for none.
     """
 
