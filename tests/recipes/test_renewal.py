@@ -14,7 +14,7 @@ from mpm3dpp import Case, Simulation, _core
 from same_bits import check_same_bits
 from worlds import check_worlds
 
-AVERAGES = ("volume_averaging = true",)
+AVERAGES = "volume_averaging = true"
 
 METALS = """
 [grid]
@@ -298,7 +298,7 @@ def test_momentum_is_kept(dimension: int) -> None:
         assert abs(totals[f"angular_momentum_numerical_{axis}"]) < 1e-11 * size
 
 
-@pytest.mark.parametrize("of_soft", ["", *AVERAGES])
+@pytest.mark.parametrize("of_soft", ["", AVERAGES])
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_another_world_is_the_same(dimension: int, of_soft: str) -> None:
     """Blocks that hit each other and walls: as they are told of by particles, boxes have the faces
@@ -312,8 +312,10 @@ def test_another_world_is_the_same(dimension: int, of_soft: str) -> None:
     assert renewals(simulation) > 1
 
 
-@pytest.mark.parametrize("of_soft", ["", *AVERAGES])
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize(
+    ("dimension", "of_soft"),
+    [(2, ""), (2, AVERAGES), (3, ""), pytest.param(3, AVERAGES, marks=pytest.mark.slow)],
+)
 def test_the_same_bits(dimension: int, of_soft: str, tmp_path: Path) -> None:
     """With any number of threads and ranks, and after a restart amid it."""
     check_same_bits(metals(dimension, of_soft), tmp_path)

@@ -90,6 +90,35 @@ std::string nodes_stay(const std::string& whose, double per_cent, double why) {
   return text.str();
 }
 
+/// Of a body of which much has failed.
+std::string mostly_failed(const std::string& whose, double per_cent) {
+  std::ostringstream text;
+  text.precision(4);
+  text << per_cent << " % of the particles of " << whose
+       << " have failed, which only walls and their own pressure stop where nodes lie in the body; "
+          "for what debris does give frame = \"updated\"";
+  return text.str();
+}
+
+/// Of a node at which so many bodies meet.
+std::string crowded(double bodies) {
+  std::ostringstream text;
+  text.precision(4);
+  text << bodies << " bodies meet at one node, and the time of a step grows with the square of "
+       << "their number; give smaller cells, larger grains, or one body in place of many";
+  return text.str();
+}
+
+/// Of a run whose settling was over too early.
+std::string unbalanced(const Note& n) {
+  std::ostringstream text;
+  text.precision(4);
+  text << "run.settle.longest was over before forces balanced: those out of balance were "
+       << n.value << " of those applied, more than run.settle.ratio = " << n.against
+       << "; give a longer time, or a larger ratio";
+  return text.str();
+}
+
 /// What is so, and what can be done. `whose`: the body, or all of its entry.
 std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded, bool keeps) {
   std::ostringstream text;
@@ -130,8 +159,7 @@ std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded
       text << too_sparse(whose, per_cent);
       break;
     case NoteKind::crowd:
-      text << n.value << " bodies meet at one node, and the time of a step grows with the square "
-           << "of their number; give smaller cells, larger grains, or one body in place of many";
+      text << crowded(n.value);
       break;
     case NoteKind::deep:
       text << deep_in_another(whose, n.value);
@@ -140,14 +168,10 @@ std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded
       text << nodes_stay(whose, per_cent, n.value);
       break;
     case NoteKind::failed:
-      text << per_cent << " % of the particles of " << whose
-           << " have failed, which only walls and their own pressure stop where nodes lie in the "
-              "body; for what debris does give frame = \"updated\"";
+      text << mostly_failed(whose, per_cent);
       break;
     case NoteKind::unsettled:
-      text << "run.settle.longest was over before forces balanced: those out of balance were "
-           << n.value << " of those applied, more than run.settle.ratio = " << n.against
-           << "; give a longer time, or a larger ratio";
+      text << unbalanced(n);
       break;
     case NoteKind::left_box:
       text << "particles of " << whose << " leave the box through its open face "

@@ -166,6 +166,7 @@ void uncover(Domain<D>& domain) {
   entries_of_all(*domain.grid.partition.comm, points);
   std::ranges::sort(points, {}, &UncoveredPoint<D>::key);
   std::vector<LaidPoint<D>> more;
+  more.reserve(points.size());
   for (const UncoveredPoint<D>& point : points) more.push_back(point.laid);
   const std::vector<KeptOfContact<double>> overlaps = overlaps_by_number(domain);
   RenewedPoints<D> surface(domain, std::vector<bool>(domain.bodies.size(), false));
