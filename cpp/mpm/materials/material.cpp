@@ -122,7 +122,7 @@ void choose_averaging(Material& material, const MaterialChoice& choice) {
                                 " takes no volume_averaging: its front is sharper than a cell");
   material.averages_volume = wanted;
   if (choice.volume_averaging || !choice.in_body) return;
-  material.averages_volume = material.once_it_flows = material.yields();
+  material.averages_volume = material.averages_once_it_flows = material.yields();
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ struct Material {
   EosBounds bounds{};
   // Over a cell's particles (step/volume_averaging.hpp); of bodies on nodes of their own their
   // pressures (step/average_in_body.cpp), or only once a body flows.
-  bool averages_volume = false, once_it_flows = false;
+  bool averages_volume = false, averages_once_it_flows = false;
 
   bool moves_as_one() const {
     return std::visit([]<class M>(const M&) { return requires { M::moves_as_one; }; }, strength);

@@ -99,7 +99,7 @@ Body<D> empty_body(std::string name, const Material& material, const ParticlePoo
   if (material.moves_as_one()) body.kind = BodyKind::rigid;
   if (pool.reference >= 0) {
     body.kind = BodyKind::material;
-    body.averages = material.averages_volume && !material.once_it_flows;
+    body.averages = material.averages_volume && !material.averages_once_it_flows;
   }
   body.matter = material.matter();
   const double speed = pool.sound_speed;

@@ -43,8 +43,8 @@ struct ParticlePool {
   // Of such bodies that flow plastically: their plastic strain; what it was, and by how much
   // particles were farther apart than at the start, when nodes were laid into them the last time.
   int flowed = -1, flowed_before = -1, stretched_before = -1;
-  int opened =
-      -1;  // and that may fail: 1 where the contact points of a failed one's neighbours are
+  // And that may fail: 1 where neighbours of one that has failed have their contact points.
+  int opened = -1;
   int set_back = -1;  // share of half its edge that the surface is set back in contact; -1: none
   Matter matter = Matter::solid;     // of its material
   double sound_speed = 0.0;          // of its material at the start [m/s]

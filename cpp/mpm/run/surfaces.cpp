@@ -197,16 +197,15 @@ void check_state(const Domain<D>& domain, Surfaces<D>& surfaces) {
   }
 }
 
-/// Where nodes were laid anew into bodies, or some of these has failed, points are not as the case
-/// has them.
+/// Where nodes were laid anew, or particles have failed, points are not as the case has them.
 template <int D>
 void exchange_points(Domain<D>& domain, StateStream& stream) {
   const auto is_renewed = [](const Body<D>& body) { return body.renewals > 0; };
   const auto has_failed = [](const Body<D>& body) { return body.failed > 0; };
   const bool others = std::ranges::any_of(domain.bodies, has_failed);
   if (!others) stream.same(domain.surfaces.points.size(), "it was made from another case");
-  if (!domain.surfaces.exist()) return;
-  if (!others && std::ranges::none_of(domain.bodies, is_renewed)) return;
+  if (!domain.surfaces.exist() || (!others && std::ranges::none_of(domain.bodies, is_renewed)))
+    return;
   const Surfaces<D>& surfaces = domain.surfaces;
   std::vector<LaidPoint<D>> points;
   if (!stream.restores())

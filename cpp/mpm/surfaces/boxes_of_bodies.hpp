@@ -19,7 +19,6 @@ class BoxesOfBodies {
   void add(int body, const Vec<double, D>& place, const Thing& thing) {
     boxes_[{body, box_of(place)}].push_back(&thing);
   }
-  bool empty() const { return boxes_.empty(); }
   /// f(thing) for those of a body that are nearer than the edge of a box to a place, and others.
   template <class F>
   void for_each_near(int body, const Vec<double, D>& place, F&& f) const {

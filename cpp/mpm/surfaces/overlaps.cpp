@@ -273,13 +273,13 @@ void set_back_more(Domain<D>& domain, const std::vector<KeptOfContact<double>>& 
       });
     }
   }
-  for (const KeptOfContact<double>& one : more) {
+  std::erase_if(more, [&](const KeptOfContact<double>& one) {
     double* const known = find_kept(surfaces.set_back, one.point, one.opposite);
     if (known) *known += one.value;
-    if (known) continue;
-    surfaces.set_back.push_back(one);
-    std::ranges::inplace_merge(surfaces.set_back, surfaces.set_back.end() - 1, std::less<>{});
-  }
+    return known != nullptr;
+  });
+  surfaces.set_back.insert(surfaces.set_back.end(), more.begin(), more.end());
+  std::sort(surfaces.set_back.begin(), surfaces.set_back.end());
 }
 
 template void find_overlaps<2>(const Domain<2>&, SurfacePart<2>&);
