@@ -5,6 +5,7 @@
 #include "mpm/comm/all_sums.hpp"
 #include "mpm/run/renew_reference.hpp"
 #include "mpm/run/watch_contact.hpp"
+#include "mpm/step/stage_functions.hpp"
 #include "mpm/surfaces/uncover.hpp"
 
 namespace mpm {
@@ -38,7 +39,7 @@ void look_for_failed(Simulation<D>& simulation) {
     more = more || counts[b] > body.failed;
     body.failed = counts[b];
     // Of pressures over nodes that what has failed does not bear, others would lose a part.
-    if (body.failed > 0) body.averages = false;
+    if (body.failed > 0 && body.averages) stop_average_in_body(domain, static_cast<int>(b));
     const double share = static_cast<double>(body.failed) / static_cast<double>(body.count);
     if (share > most_that_is_a_body)
       note(simulation, {.kind = NoteKind::failed, .body = static_cast<int>(b), .share = share});

@@ -1,7 +1,8 @@
-// Bodies on nodes of their own with `volume_averaging`: their mean stress is projected onto the
-// functions of the nodes. Points between nodes have more volumes than nodes can tell apart, and
-// what nodes cannot tell apart is noise of the pressure. With s_p the mean normal stress (in the
-// plane in 2D), pi_p = V_p s_p / m_p and
+// Bodies on nodes of their own that average their pressures, as plastic ones do once they flow
+// (run/average_what_flows.hpp) and others where `volume_averaging` asks for it: their mean stress
+// is projected onto the functions of the nodes. Points between nodes have more volumes than nodes
+// can tell apart, and what nodes cannot tell apart is noise of the pressure. With s_p the mean
+// normal stress (in the plane in 2D), pi_p = V_p s_p / m_p and
 //   (R pi)_p = sum_i N_ip (sum_q m_q N_iq pi_q) / m_i                                       (P1)
 // forces use in place of s_p
 //   (m_p / V_p) [(1 - b) pi_p + b (R pi)_p]                                                 (P2)
@@ -98,19 +99,24 @@ void for_each_averaging(Domain<D>& domain, F&& f) {
   });
 }
 
-/// Forces use the stress of particles as it is where a body of such a material does not average
-/// yet.
+/// Forces use the stress of a patch's particles as it is, less their viscous pressure.
+template <int D>
+void leave_stress(Domain<D>& domain, const Patch<D>& patch) {
+  ParticlePool<D>& pool = domain.pool_of(patch);
+  const int at = pool.at.viscosity_pressure;
+  const double* const q = at >= 0 ? pool.columns.component(at) : nullptr;
+  double* const taken = pool.columns.component(pool.at.force_pressure);
+  for (const std::uint32_t row : pool.rows(patch)) taken[row] = q ? q[row] : 0.0;
+}
+
+/// That of bodies that could average and do not, where there is such a pressure in each step.
 template <int D>
 void leave_others(Domain<D>& domain) {
   for_each_patch(domain, in_body, [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
-    ParticlePool<D>& pool = domain.pool_of(patch);
-    const MaterialColumns& at = pool.at;
-    if (domain.body_of(patch).averages || at.force_pressure < 0 || at.viscosity_pressure < 0)
-      return;
-    const double* const q = pool.columns.component(at.viscosity_pressure);
-    double* const used = pool.columns.component(at.force_pressure);
-    for (const std::uint32_t row : pool.rows(patch)) used[row] = q[row];
+    const MaterialColumns& at = domain.pool_of(patch).at;
+    if (!domain.body_of(patch).averages && at.force_pressure >= 0 && at.viscosity_pressure >= 0)
+      leave_stress(domain, patch);
   });
 }
 
@@ -178,9 +184,24 @@ void start_average_in_body(Domain<D>& domain) {
   project_pressure(domain, false);
 }
 
+template <int D>
+void stop_average_in_body(Domain<D>& domain, int body) {
+  domain.body_at(body).averages = false;
+  for_each_patch(domain, in_body, [&](std::size_t p) {
+    const Patch<D>& patch = domain.grid.patches[p];
+    if (patch.body != body) return;
+    leave_stress(domain, patch);
+    // Sums over the patches that hold a node are of all bodies.
+    const NodeBlock<D> block = domain.grid.block(p);
+    for (int n = 0; n < block.count; ++n) block.displacements[n][projected_at] = 0.0;
+  });
+}
+
 template void average_in_body<2>(Domain<2>&);
 template void average_in_body<3>(Domain<3>&);
 template void start_average_in_body<2>(Domain<2>&);
 template void start_average_in_body<3>(Domain<3>&);
+template void stop_average_in_body<2>(Domain<2>&, int);
+template void stop_average_in_body<3>(Domain<3>&, int);
 
 }  // namespace mpm

@@ -119,6 +119,9 @@ void average_in_body(Domain<D>& domain);
 /// The same of the stress at the start.
 template <int D>
 void start_average_in_body(Domain<D>& domain);
+/// A body averages no more: forces use the stress of its particles as it is, from the next step on.
+template <int D>
+void stop_average_in_body(Domain<D>& domain, int body);
 
 /// For transfers that take the velocity of the grid: at nodes in contact that without eqs. (6)-(7)
 /// while particles are advanced, and the corrected one again (decision 0046).

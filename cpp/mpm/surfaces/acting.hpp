@@ -36,7 +36,7 @@ class Acting {
     ActingOnHost<D>& host = on(at.host);
     host.push.add(force, at.surface);
     const Mat<double, D>& F = surfaces_.F_on_hosts[surfaces_.place_on_hosts[at.host] - 1];
-    host.push.add_moment(force, Fibre<D>(F, at.normal, 0.5 * surfaces_.spacing));
+    host.push.add_moment(force, Fibre<D>(F, at.normal, behind_surface(surfaces_, at)));
   }
   void rub(std::uint64_t order, std::uint32_t point, const Vec<double, D>& force,
            const PlaceAtHost<D>& reach, const Vec<double, D>& place) {

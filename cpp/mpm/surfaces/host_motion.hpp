@@ -74,6 +74,13 @@ HostDeformation<D> deformation_at(const Domain<D>& domain, std::uint32_t number)
   return HostDeformation<D>(deformation_of(domain, host));
 }
 
+/// How far a point lies behind the surface [m]. Debris has none: its points lie where its particles
+/// are, however these are stretched between pieces.
+template <int D>
+double behind_surface(const Surfaces<D>& surfaces, const ContactPoint<D>& point) {
+  return point.face == no_face ? 0.0 : 0.5 * surfaces.spacing;
+}
+
 /// What acts on a host to its nodes.
 template <int D>
 void give_to_nodes_of(Domain<D>& domain, const Host<D>& host, const ForceAtHost<D>& forces) {

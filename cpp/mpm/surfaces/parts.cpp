@@ -230,7 +230,7 @@ void place_points(Domain<D>& domain) {
         F = deformation_of(pool, surfaces.hosts[host]);
         second = second_derivatives_of(domain, surfaces.hosts[host]);
       }
-      const Fibre<D> fibre(F, point.normal, 0.5 * surfaces.spacing);
+      const Fibre<D> fibre(F, point.normal, behind_surface(surfaces, point));
       move_point(surfaces, part, c,
                  pool.position_of(surfaces.hosts[host].row) + product(F, point.surface.away) +
                      product(second, point.surface.second) - fibre.behind * fibre.direction);

@@ -13,7 +13,7 @@ PlaceAtHost<D> reach_of(const Domain<D>& domain, std::uint32_t c, const Vec<doub
   if (surfaces.parts[surfaces.hosts[point.host].part].as_one)
     return point.surface;  // not asked for
   const HostDeformation<D> deformation = deformation_at(domain, point.host);
-  const Fibre<D> fibre(deformation.F, point.normal, 0.5 * surfaces.spacing);
+  const Fibre<D> fibre(deformation.F, point.normal, behind_surface(surfaces, point));
   const Vec<double, D> surface = surfaces.places[c] + fibre.behind * fibre.direction;
   return {point.surface.away + product(deformation.inverse, place - surface), point.surface.second};
 }

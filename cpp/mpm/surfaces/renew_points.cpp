@@ -89,6 +89,10 @@ template <int D>
 RenewedPoints<D>::RenewedPoints(Domain<D>& domain, const std::vector<bool>& renewed) {
   if (!domain.surfaces.exist()) return;
   points_ = laid_points(domain, renewed);
+  // From now on their places in the body are these, as those of particles: none are near by a fold
+  // (near_themselves).
+  for (LaidPoint<D>& point : points_)
+    if (renewed[static_cast<std::size_t>(point.given.body)]) point.at_start = point.place;
   keep_memory(domain, renewed);
 }
 
@@ -131,18 +135,23 @@ void RenewedPoints<D>::keep_memory(Domain<D>& domain, const std::vector<bool>& r
 }
 
 template <int D>
+void drop_bonds_of_failed(Surfaces<D>& surfaces, const std::vector<LaidPoint<D>>& points) {
+  std::vector<bool> gone(points.size(), false);
+  for (const LaidPoint<D>& point : points) gone[point.given.number] = point.failed;
+  std::erase_if(surfaces.bonds, [&](const Bond<D>& bond) {
+    return gone[first_number(surfaces, bond.first)] || gone[first_number(surfaces, bond.second)];
+  });
+}
+
+template <int D>
 void RenewedPoints<D>::uncover(Domain<D>& domain, const std::vector<LaidPoint<D>>& more) {
-  std::vector<bool> gone(points_.size(), false);
   for (LaidPoint<D>& point : points_) {
     if (!point.failed) continue;
     point.given.face = no_face;
     point.given.felt_area = 0.0;
-    gone[point.given.number] = true;
+    point.given.offset = Vec<double, D>::zero();
   }
-  std::erase_if(domain.surfaces.bonds, [&](const Bond<D>& bond) {
-    return gone[first_number(domain.surfaces, bond.first)] ||
-           gone[first_number(domain.surfaces, bond.second)];
-  });
+  drop_bonds_of_failed(domain.surfaces, points_);
   for (const LaidPoint<D>& point : more) {
     points_.push_back(point);
     points_.back().given.number = static_cast<std::uint32_t>(points_.size() - 1);
@@ -229,7 +238,7 @@ std::vector<std::uint32_t> lay_points(Domain<D>& domain, const std::vector<LaidP
 
 template <int D>
 std::vector<bool> near_themselves(Domain<D>& domain, const std::vector<bool>& bodies) {
-  const double h = domain.grid.cell_size, reach = 3.0 * h + domain.surfaces.spacing;
+  const double h = domain.grid.cell_size, reach = apart_to_touch * h;
   const std::vector<LaidPoint<D>> points = laid_points(domain, bodies);
   const auto is_meant = [&](const LaidPoint<D>& point) {
     return bodies[static_cast<std::size_t>(point.given.body)] && point.given.area > 0.0;
@@ -254,6 +263,8 @@ std::vector<bool> near_themselves(Domain<D>& domain, const std::vector<bool>& bo
   return found;
 }
 
+template void drop_bonds_of_failed<2>(Surfaces<2>&, const std::vector<LaidPoint<2>>&);
+template void drop_bonds_of_failed<3>(Surfaces<3>&, const std::vector<LaidPoint<3>>&);
 template std::vector<LaidPoint<2>> laid_points<2>(Domain<2>&, const std::vector<bool>&);
 template std::vector<LaidPoint<3>> laid_points<3>(Domain<3>&, const std::vector<bool>&);
 template class RenewedPoints<2>;

@@ -55,6 +55,10 @@ class RenewedPoints {
 template <int D>
 std::vector<LaidPoint<D>> laid_points(Domain<D>& domain, const std::vector<bool>& renewed);
 
+/// What holds points whose hosts have failed holds no more. By numbers at the start.
+template <int D>
+void drop_bonds_of_failed(Surfaces<D>& surfaces, const std::vector<LaidPoint<D>>& points);
+
 /// Points by their numbers at the start: of each where it is by now. Parts, hosts and bonds of the
 /// bodies are made of them.
 template <int D>

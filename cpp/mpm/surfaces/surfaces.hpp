@@ -3,13 +3,17 @@
 // behind the surface that its shape has, each carried by the particle nearest to it, its host:
 //   x_s = x_p + F_p d + sum_k b_k d2u/dX_k^2,   x_c = x_s - (e / 2) F_p N / |F_p N|.          (S0)
 // A step ends with
-//   parts.hpp           where they are, (S0)
+//   parts.hpp           where they are, (S0); as_one.hpp: of what does not deform
 //   near_points.hpp     which may feel each other: lists
 //   approaches.hpp      how far off springs may begin
 //   overlaps.hpp        which overlap a face of the box or another body, and how deep (felt.hpp)
 //   bonds.hpp           what is bonded pulls
 //   press.hpp           springs of an energy, and Coulomb friction that remembers (law.hpp)
-//   touch_surfaces.cpp  what comes to the hosts, and from these to their nodes in the next step
+//   between.hpp         what pairs of bodies come to; restitution.hpp: what these do not get back
+//   touch_surfaces.cpp  (read it second) what comes to hosts, and to their nodes in the next step
+// Beside these levelled.hpp lets faces lie flat that are drawn touching, mirrored.hpp has images
+// behind walls, tell_others.hpp is for ranks; and between steps points are made anew:
+//   renew_points.hpp    where nodes are laid anew; uncover.hpp: where particles have failed
 #include <algorithm>
 #include <cstdint>
 #include <functional>

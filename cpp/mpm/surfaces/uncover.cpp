@@ -172,7 +172,7 @@ void uncover(Domain<D>& domain) {
   RenewedPoints<D> surface(domain, std::vector<bool>(domain.bodies.size(), false));
   surface.uncover(domain, more);
   surface.lay(domain);
-  if (domain.surfaces.meet) set_back_more(domain, overlaps);
+  set_back_more(domain, overlaps);
 }
 
 template void uncover<2>(Domain<2>&);
