@@ -97,13 +97,15 @@ void def_acting(SimulationClass& simulation) {
       .def("add_surface",
            of_any([](auto& s, int body, const std::vector<std::uint32_t>& particles,
                      const Input& away, const Input& normals, const Input& areas, const Input& felt,
-                     const std::vector<std::int32_t>& faces, double e) {
+                     const std::vector<std::int32_t>& faces, double e, unsigned held_by) {
              const auto of = [](const Input& x) { return span_of(x); };
-             add_surface(s, body,
-                         {particles, of(away), of(normals), of(areas), of(felt), faces, e});
+             add_surface(
+                 s, body,
+                 {particles, of(away), of(normals), of(areas), of(felt), faces, e, held_by});
            }),
            nb::arg("body"), nb::arg("particles"), nb::arg("offsets"), nb::arg("normals"),
-           nb::arg("areas"), nb::arg("felt_areas"), nb::arg("faces"), nb::arg("spacing"))
+           nb::arg("areas"), nb::arg("felt_areas"), nb::arg("faces"), nb::arg("spacing"),
+           nb::arg("held_by"))
       .def("add_body_force",
            of_any([](auto& s, const std::vector<int>& bodies,
                      const std::vector<Expression::Program>& value) {

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from mpm3dpp import Body, Case, GridBox, Particles, Simulation, Walls
 from mpm3dpp.base.expression import Expression
-from mpm3dpp.case.grid import WallFriction
+from mpm3dpp.case.box import WallFriction
 from mpm3dpp.case.loads import Load
 
 Array = NDArray[np.float64]

@@ -16,7 +16,7 @@ from material_pages import library_page, materials_page
 from reference_python import python_page
 
 from mpm3dpp.base.damping import Damping, MaterialDamping
-from mpm3dpp.case import body, case, grid, parts, transfer
+from mpm3dpp.case import body, box, case, grid, parts, transfer
 from mpm3dpp.case.detonation import Detonation
 from mpm3dpp.case.initial import Initial
 from mpm3dpp.case.loads import Load
@@ -32,8 +32,8 @@ NOTE = "Made by `tools/make_reference.py` from the code: do not edit."
 # Heading, class, note. The tables of a case in the order in which one writes them.
 TABLES: tuple[tuple[str, type, str], ...] = (
     ("grid", grid.Grid, ""),
-    ("grid.box", grid.GridBox, ""),
-    ("grid.box.walls", grid.Walls, ""),
+    ("grid.box", box.GridBox, ""),
+    ("grid.box.walls", box.Walls, ""),
     ("grid.outflow_box", grid.GridOutflowBox, ""),
     ("grid.coarsening", grid.GridCoarsening, ""),
     ("run", parts.Run, ""),

@@ -23,9 +23,10 @@ if TYPE_CHECKING:
     from mpm3dpp.base.errors import CaseError, RunError
     from mpm3dpp.base.time_functions import TimeFunction
     from mpm3dpp.case.body import Body
+    from mpm3dpp.case.box import GridBox, Walls
     from mpm3dpp.case.case import Case, Material, load_case
     from mpm3dpp.case.detonation import Detonation
-    from mpm3dpp.case.grid import Grid, GridBox, GridCoarsening, GridOutflowBox, Walls
+    from mpm3dpp.case.grid import Grid, GridCoarsening, GridOutflowBox
     from mpm3dpp.case.loads import Load
     from mpm3dpp.case.motion import Motion
     from mpm3dpp.case.particles import Particles
@@ -63,8 +64,9 @@ _HOMES = {
     "base.time_functions": ("TimeFunction",),
     "case": ("Case", "Material", "load_case"),
     "case.body": ("Body",),
+    "case.box": ("GridBox", "Walls"),
     "case.detonation": ("Detonation",),
-    "case.grid": ("Grid", "GridBox", "GridCoarsening", "GridOutflowBox", "Walls"),
+    "case.grid": ("Grid", "GridCoarsening", "GridOutflowBox"),
     "case.loads": ("Load",),
     "case.motion": ("Motion",),
     "case.particles": ("Particles",),

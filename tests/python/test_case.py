@@ -12,9 +12,10 @@ import mpm3dpp
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.machine import thread_count
 from mpm3dpp.case.body import Body
+from mpm3dpp.case.box import GridBox
 from mpm3dpp.case.case import Case, Material, load_case
 from mpm3dpp.case.file import locate_keys, parse
-from mpm3dpp.case.grid import Grid, GridBox
+from mpm3dpp.case.grid import Grid
 from mpm3dpp.case.pairs import laws_of
 from mpm3dpp.case.parts import Contact, ContactPair, Output, Run
 from mpm3dpp.fill.build import build, warnings

@@ -15,7 +15,7 @@ E = 0.25  # As in a case of cells of 1.
 
 
 def points(shape: dict[str, Any], spacing: float) -> Any:
-    return points_of_shape(parse_shape(shape), spacing, 0.5 * E)
+    return points_of_shape(parse_shape(shape), spacing, 0.5 * E)[0]
 
 
 def box(*corners: list[float]) -> dict[str, Any]:
@@ -61,7 +61,7 @@ def test_a_triangle_that_is_turned_has_the_same_points(angle: float) -> None:
 def test_bodies_of_particles_have_a_face_for_each_way() -> None:
     places = np.stack(np.meshgrid(*[np.arange(4.0)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     steps = places[places.sum(axis=1) < 6]
-    found = points_of_particles(0.5 * steps, 0.5, E, 0.5 * E)
+    found = points_of_particles(0.5 * steps, 0.5, E, 0.5 * E)[0]
     assert len(np.unique(found.faces)) == 6
     for face in range(6):
         normals = found.normals[found.faces == face]

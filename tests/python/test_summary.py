@@ -11,7 +11,8 @@ import pytest
 from cases import BASES
 from mpm3dpp import Body, Case, Grains, Grid, Material, Run, Simulation, load_case, shapes
 from mpm3dpp.base.time_functions import TimeFunction
-from mpm3dpp.case.grid import GridBox, GridCoarsening
+from mpm3dpp.case.box import GridBox
+from mpm3dpp.case.grid import GridCoarsening
 from mpm3dpp.fill.build import build
 from mpm3dpp.run.memory import memory_bytes
 from mpm3dpp.run.summary import echo
@@ -164,5 +165,5 @@ def test_what_contact_with_walls_alone_and_a_longer_step_come_to() -> None:
         contact={"restitution": 0.4},
     )
     lines = echo(case, build(case))
-    assert "contact: of surfaces with walls, restitution 0.4" in lines
+    assert "contact: of surfaces with themselves and walls, restitution 0.4" in lines
     assert "cfl 0.9 (0.6 with contact between surfaces), " in lines

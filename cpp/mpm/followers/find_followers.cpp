@@ -87,7 +87,8 @@ std::vector<Follower<D>> all_followers(Domain<D>& domain, const std::vector<bool
     const int number = masses[begin].node.body;
     const auto nodes = std::ranges::equal_range(masses, number, {}, body_of);
     const auto filled = std::ranges::equal_range(cells, number, {}, body_of);
-    add_followers<D>(grid.walls, filled, nodes, laid[static_cast<std::size_t>(number)], all);
+    add_followers<D>(grid.walls_of(number), filled, nodes, laid[static_cast<std::size_t>(number)],
+                     all);
     begin += nodes.size();
   }
   return all;

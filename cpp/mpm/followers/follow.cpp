@@ -105,7 +105,7 @@ void add_reaction(Domain<D>& domain, std::size_t p, const ForceBeyond<D>& one) {
                cross(in_space<D>(grid.position_of(one.beyond)), in_space<D>(s));
   for (int a = 0; a < D; ++a)
     if (before[a] != s[a])
-      to.faces.add(grid.walls.faces_turning(one.beyond, a), a, before[a] - s[a]);
+      to.faces.add(grid.walls_of(patch.body).faces_turning(one.beyond, a), a, before[a] - s[a]);
 }
 
 }  // namespace

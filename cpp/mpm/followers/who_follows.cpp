@@ -19,12 +19,11 @@ struct BodyOfNodes {
     double share = value_of(cells, image ? image->node : cell);
     for (std::size_t a = 0; a < D; ++a)
       for (const int side : {0, 1})
-        if (walls.exist && mirrors(walls.face[a][side]) &&
+        if (walls.exist && Walls<D>::holds(walls.face[a][side]) &&
             cell[a] == (side == 0 ? 0 : walls.cells[a]))
           share *= 2.0;
     return share;
   }
-  static bool mirrors(Wall wall) { return wall == Wall::slip || wall == Wall::fixed; }
 
   bool leads(const std::type_identity_t<Index<D>>& node) const {
     constexpr double least = 1.499 / (1 << D);  // of 2^D particles a cell more than one

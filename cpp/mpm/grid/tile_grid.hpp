@@ -18,6 +18,8 @@ struct TileGrid : GridGeometry<D> {
   OutflowBox<D> outflow_box;
   bool has_dashpots = false;      // the blocks have room for those of absorbing walls
   bool has_wall_springs = false;  // and for those of walls that touch
+  // Of each body, where walls hold some and push back others; else empty: `walls` of all.
+  std::vector<Walls<D>> walls_of_bodies;
   bool bonded = false;            // all bodies have one velocity field: they share their nodes
   std::vector<Patch<D>> patches;  // by body, then by tile
   Partition<D> partition;
@@ -33,6 +35,10 @@ struct TileGrid : GridGeometry<D> {
   std::vector<std::uint8_t> reshaped;  // scratch: of each patch, its block is another than before
   std::size_t patches_with_particles = 0, records_with_particles = 0;  // records: of their nodes
   bool blocks_known = false;  // the blocks are those of the patches there are
+
+  const Walls<D>& walls_of(int body) const {
+    return walls_of_bodies.empty() ? this->walls : walls_of_bodies[static_cast<std::size_t>(body)];
+  }
 
   NodeBlock<D> block(const Patch<D>& patch) {
     const int count = patch.shape.node_count;

@@ -62,6 +62,7 @@ struct Body {
   int force = -1;                            // place among Domain::body_forces, if it has one
   int damping = -1;                          // and among Domain::dampings
   std::unique_ptr<PrescribedMotion> motion;  // none for the thousands of bodies that are free
+  unsigned held_by = ~0u;  // faces of the box, bits 2 axis + side, if it has such nodes
   double pressure_impedance = 0.0, shear_impedance = 0.0;  // rho c of the start [kg/(m^2 s)]
   bool averages = false;         // its pressures on its own nodes (step/average_in_body.cpp)
   std::int64_t failed = 0;       // of its particles, with such nodes (run/look_for_failed.hpp)

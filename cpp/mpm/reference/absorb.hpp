@@ -44,7 +44,7 @@ void absorb_at_walls(Step<D>& step) {
         const double half = 0.5 * step.dt / node.m;
         node.f_absorb[a] = -factor[a] * (node.v[a] + half * node.f[a]) / (1.0 + half * factor[a]);
       }
-      step.hold(i, node.f_absorb);
+      hold(step.walls, i, node.f_absorb);
       node.f += node.f_absorb;
     }
   }

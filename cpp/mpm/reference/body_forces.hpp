@@ -20,7 +20,7 @@ void add_body_forces(Step<D>& step) {
       image.f_body += mirrored(node.f_body);
     });
     for (auto& [i, node] : b.nodes) {
-      step.hold(i, node.f_body);
+      hold(step.walls_of(b), i, node.f_body);
       node.f += node.f_body;
       node.f_load += node.f_body;
     }

@@ -45,7 +45,7 @@ void find_contacts(Step<D>& step) {
         at->second += p.m * dN;
       });
     for (auto& [i, n] : normal[k]) {
-      step.hold(i, n);
+      hold(step.walls, i, n);
       n = std::min(1.0, norm(n) * step.h / step.bodies[k].nodes[i].m) * normalised(n);
     }
   }

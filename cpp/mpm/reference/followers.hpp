@@ -18,11 +18,12 @@ struct Followers {
 
   /// Of a body by its particles, once its nodes have masses: who leads gets those of who follows.
   void find(const Step<D>& step, Body<D>& body) {
-    const std::map<Index<D>, double> cells = filled(step, body);
+    const Walls<D> walls = step.walls_of(body);
+    const std::map<Index<D>, double> cells = filled(step, walls, body);
     for (const Particle<D>& p : body.particles)  // with those that get loads alone
       around(nearest(step, p.X), 1, [&](const Index<D>& i) { body.nodes[i]; });
     const auto exists = [&](const Index<D>& i) {
-      const auto image = step.walls.image(i);
+      const auto image = walls.image(i);
       const auto at = body.nodes.find(image ? image->node : i);
       return at != body.nodes.end() && at->second.m > 0.0;
     };
@@ -35,7 +36,7 @@ struct Followers {
       return full && exists(i);
     };
     for (const auto& [j, node] : body.nodes) {
-      if (step.walls.image(j) || leads(j)) continue;
+      if (walls.image(j) || leads(j)) continue;
       for (const double farthest : {1.0, std::sqrt(2.0), 2.0, 3.0}) {  // in diagonals of a cell
         std::vector<Index<D>> near;
         around(j, 5, [&](const Index<D>& i) {
@@ -44,7 +45,7 @@ struct Followers {
         });
         if (std::vector<double> e; linear(j, near, e)) {
           for (std::size_t k = 0; k < near.size(); ++k)
-            of[j].push_back(leader(step, near[k], e[k]));
+            of[j].push_back(leader(walls, near[k], e[k]));
           break;
         }
       }
@@ -114,18 +115,19 @@ struct Followers {
       i[static_cast<std::size_t>(a)] = static_cast<int>(std::lround(x[a] / step.h));
     return i;
   }
-  static Leader<D> leader(const Step<D>& step, const Index<D>& i, double e) {
+  static Leader<D> leader(const Walls<D>& walls, const Index<D>& i, double e) {
     Leader<D> made{i, e, {}};
-    const auto image = step.walls.image(i);
+    const auto image = walls.image(i);
     if (image) made.node = image->node;
     for (int a = 0; a < D; ++a) made.sign[a] = image ? image->component(1.0, a) : 1.0;
     return made;
   }
   /// How much of each box about a node the particles fill, as boxes, and their images.
-  static std::map<Index<D>, double> filled(const Step<D>& step, const Body<D>& body) {
+  static std::map<Index<D>, double> filled(const Step<D>& step, const Walls<D>& walls,
+                                           const Body<D>& body) {
     std::map<Index<D>, double> cells;
     for (const Particle<D>& p : body.particles)
-      for_each_mirror(step, [&](const Mirror<D>& mirror) {
+      for_each_mirror(step.h, walls, [&](const Mirror<D>& mirror) {
         const double half = 0.5 * std::pow(p.m / body.material.density, 1.0 / D) / step.h;
         const Vec<double, D> x = (1.0 / step.h) * mirror.place(p.X);
         around(nearest(step, mirror.place(p.X)), 1, [&](const Index<D>& c) {

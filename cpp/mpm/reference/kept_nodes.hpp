@@ -31,14 +31,15 @@ struct KeptNodes {
       });
     step.fold(body, [](Node<D>& node, Node<D>& image, auto&&) { image.m += node.m; });
     followers.find(step, body);
+    const Walls<D> walls = step.walls_of(body);
     for (auto& [i, node] : body.nodes) {
       u[i] = Vec<double, D>::zero();
       if (!(node.m > 0.0)) continue;  // it follows, or stays at rest
       node.v = velocity(i);
-      step.hold(i, node.v);
+      hold(walls, i, node.v);
     }
     take(&Node<D>::v);
-    for (const auto& [i, node] : body.nodes) turns = turns && step.walls.constrained_axes(i) == 0;
+    for (const auto& [i, node] : body.nodes) turns = turns && walls.constrained_axes(i) == 0;
     Mat<double, D> one{};
     for (int a = 0; a < D; ++a) one[a][a] = 1.0;
     F.assign(body.particles.size(), one);
@@ -219,7 +220,7 @@ struct KeptNodes {
   /// v_i += dt' f_i / m_i, u_i += dt v_i, (M3); walls hold what lies on them.
   void advance_nodes() {
     for (auto& [i, node] : body.nodes) {
-      step.hold(i, node.f);
+      hold(step.walls_of(body), i, node.f);
       node.dv = (node.m > 0.0 ? 0.5 * (step.dt + step.dt_before) / node.m : 0.0) * node.f;
       node.v += node.dv;
     }

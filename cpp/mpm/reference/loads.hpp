@@ -114,7 +114,7 @@ void load_surfaces(Step<D>& step) {
       image.f_load += mirrored(node.f_load);
     });
     for (auto& [i, node] : b.nodes) {
-      step.hold(i, node.f_load);
+      hold(step.walls_of(b), i, node.f_load);
       node.f += node.f_load;
     }
   }

@@ -23,7 +23,7 @@ struct Mirror {
 /// That which leaves a place where it is, and those of walls that are slip or fixed, of edges and
 /// corners too.
 template <int D, class F>
-void for_each_mirror(const Step<D>& step, F&& f) {
+void for_each_mirror(double h, const Walls<D>& walls, F&& f) {
   Index<D> low, high;
   low.fill(-1), high.fill(1);
   for_each_index<D>(low, high, [&](const Index<D>& side) {
@@ -31,10 +31,9 @@ void for_each_mirror(const Step<D>& step, F&& f) {
     for (int a = 0; a < D; ++a) {
       const auto k = static_cast<std::size_t>(a);
       mirror.sign[a] = side[k] == 0 ? 1.0 : -1.0;
-      mirror.twice[a] = side[k] > 0 ? 2.0 * step.h * step.walls.cells[k] : 0.0;
+      mirror.twice[a] = side[k] > 0 ? 2.0 * h * walls.cells[k] : 0.0;
       if (side[k] == 0) continue;
-      const Wall wall = step.walls.face[k][side[k] < 0 ? 0 : 1];
-      if (!step.walls.exist || (wall != Wall::slip && wall != Wall::fixed)) return;
+      if (!walls.exist || !Walls<D>::holds(walls.face[k][side[k] < 0 ? 0 : 1])) return;
     }
     f(mirror);
   });

@@ -38,7 +38,7 @@ void restitute(Surfaces<D>& surfaces, const Meeting<D>& met, std::size_t a, Whom
   const double taken = (1.0 - e * e) * N * std::clamp(u_n / u_s, 0.0, 1.0);
   const double ln = std::log(std::max(e, 1e-3)), pi = std::numbers::pi;
   const double beta = -ln / std::sqrt(pi * pi + ln * ln);
-  const double mu = second ? law.mu : surfaces.step.walls.friction[axis_of(whom)][side_of(whom)];
+  const double mu = second ? law.mu : friction_at_wall(surfaces.step, first.body(), whom);
   const Vector3 u_t = along(u, n);
   const double drag =
       std::min({2.0 * beta * std::sqrt(met.k * m) * norm(u_t), 0.05 * m / dt * norm(u_t),

@@ -126,7 +126,7 @@ void find_springs(Step<D>& step) {
     Contact<D>& c = step.contacts[i];
     Vec<double, D> force = Vec<double, D>::zero();
     for (const Spring& spring : springs[i]) force += (spring.stiffness * spring.overlap) * spring.n;
-    step.hold(c.node, force);
+    hold(step.walls, c.node, force);
     c.n = normalised(force);
     c.push = norm(force);
     for (const Spring& spring : springs[i])

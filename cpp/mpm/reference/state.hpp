@@ -51,6 +51,7 @@ struct Body {
   std::array<TimeFunction, 3> velocity{}, spin{};  // [m/s], [rad/s]
   // Force per mass [m/s^2], of the present place, that at the start [m] and the time [s]; or none.
   std::function<Vec<double, D>(const Vec<double, D>&, const Vec<double, D>&, double)> force;
+  unsigned held_by = ~0u;           // faces of the box, bits 2 axis + side, on nodes of its own
   double alpha = 0.0, kappa = 0.0;  // damping of its motion: by the mass [1/s], local
   std::map<Index<D>, Node<D>> nodes;
 

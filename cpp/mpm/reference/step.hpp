@@ -4,6 +4,7 @@
 // runs is in step/, and tests hold the stages there to it (tests/unit/step).
 #include <functional>
 #include <optional>
+#include <type_traits>
 
 #include "mpm/reference/affine.hpp"
 #include "mpm/reference/shape.hpp"
@@ -20,6 +21,13 @@ template <int D>
 void average_gradients(const Step<D>& step, Body<D>& b);
 template <int D>
 void set_prescribed_velocities(const Step<D>& step, Body<D>& b, Vec<double, D> Node<D>::* velocity);
+
+/// Take away the components along the axes that walls hold at a node.
+template <int D>
+void hold(const Walls<D>& walls, const std::type_identity_t<Index<D>>& i, Vec<double, D>& v) {
+  for (int a = 0; a < D; ++a)
+    if (walls.constrained_axes(i) >> a & 1u) v[a] = 0.0;
+}
 
 /// The stages; those of contact, loads, walls, rigid and prescribed bodies, and the work of forces
 /// have a file each beside this one.
@@ -115,7 +123,7 @@ struct Step {
         });
       if (averages) average_forces(*this, b);
       fold(b, [](Node<D>& node, Node<D>& image, auto&& mirrored) { image.f += mirrored(node.f); });
-      for (auto& [i, node] : b.nodes) hold(i, node.f);
+      for (auto& [i, node] : b.nodes) hold(walls, i, node.f);
     }
   }
 
@@ -138,7 +146,7 @@ struct Step {
     for (Body<D>& b : bodies) {
       for (auto& [i, node] : b.nodes) {
         if (!b.prescribed()) {
-          hold(i, node.f);  // Friction of a prescribed body may act along a wall.
+          hold(walls, i, node.f);  // Friction of a prescribed body may act along a wall.
           find_damping(b, node);
           node.dv = (dt / node.m) * (node.f + node.f_damp);
         }
@@ -239,11 +247,9 @@ struct Step {
     }
   }
 
-  /// Take away the components along the axes that walls hold at a node.
-  void hold(const Index<D>& i, Vec<double, D>& v) const {
-    for (int a = 0; a < D; ++a)
-      if (walls.constrained_axes(i) >> a & 1u) v[a] = 0.0;
-  }
+  /// The walls as a body has them.
+  Walls<D> walls_of(const Body<D>& b) const { return walls.as_held_by(b.held_by); }
+
   /// Nodes beyond a wall belong to a mirrored body. add(node, image, mirrored): what particles give
   /// to the node is the image's, vectors mirrored.
   template <class F>
@@ -261,7 +267,7 @@ struct Step {
   }
   template <class F>
   void for_image(Body<D>& b, const Index<D>& i, F&& f) const {
-    const auto image = walls.image(i);
+    const auto image = walls_of(b).image(i);
     if (!image) return;
     f(b.nodes[image->node], [image](Vec<double, D> v) {
       for (int a = 0; a < D; ++a) v[a] = image->component(v[a], a);
@@ -273,7 +279,7 @@ struct Step {
     if (b.prescribed()) return set_prescribed_velocities(*this, b, velocity);
     for (auto& [i, node] : b.nodes) {
       node.*velocity = (1.0 / node.m) * (node.*velocity);
-      hold(i, node.*velocity);
+      hold(walls, i, node.*velocity);
     }
     reflect(b, velocity);
   }

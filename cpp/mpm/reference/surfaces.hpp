@@ -11,6 +11,12 @@
 
 namespace mpm::reference {
 
+/// Coulomb's coefficient of a face of the box for a body.
+template <int D>
+double friction_at_wall(const Step<D>& step, const Body<D>& body, Whom face) {
+  return step.walls_of(body).friction[axis_of(face)][side_of(face)];
+}
+
 template <int D>
 struct Surfaces {
   const Step<D>& step;
@@ -133,9 +139,10 @@ struct Surfaces {
         const double A = bodies[a].points[p].A, of_a = bodies[a].compliance();
         if (!(A > 0.0)) continue;
         const double H = 0.25 * step.h;
+        const Walls<D> walls = step.walls_of(bodies[a].body());
         for (Whom face = -1; face >= -2 * D && bodies[a].deforms(); --face) {
           const auto axis = static_cast<std::size_t>(axis_of(face));
-          if (!step.walls.exist || step.walls.face[axis][side_of(face)] != Wall::contact) continue;
+          if (!walls.exist || walls.face[axis][side_of(face)] != Wall::contact) continue;
           SurfaceTouch<D> t{a, p, face};
           t.z = height_over(face, bodies[a].points[p].x[axis_of(face)]);
           t.k = A / (H * of_a);
@@ -157,7 +164,7 @@ struct Surfaces {
     const ContactPoint<D>& p = bodies[t.body].points[t.point];
     const bool itself = t.whom == static_cast<Whom>(t.body);
     std::map<int, double> of_face;
-    for_each_mirror(step, [&](const Mirror<D>& mirror) {
+    for_each_mirror(step.h, step.walls_of(other(t).body()), [&](const Mirror<D>& mirror) {
       for (std::size_t q = 0; q < other(t).points.size(); ++q) {
         const ContactPoint<D>& c = other(t).points[q];
         if (!(c.A_felt > 0.0) || (itself && !(norm(c.X - p.X) > 4.0 * step.h))) continue;
@@ -255,7 +262,7 @@ struct Surfaces {
     const auto b = static_cast<std::size_t>(t.whom);
     const bool wall = is_wall(t.whom), first = wall || t.body < b;
     const double mu =
-        wall ? step.walls.friction[axis_of(t.whom)][side_of(t.whom)] : law_of(t.body, b).mu;
+        wall ? friction_at_wall(step, bodies[t.body].body(), t.whom) : law_of(t.body, b).mu;
     const auto pair = left.find({first ? t.body : b, first ? t.whom : static_cast<Whom>(t.body)});
     return pair == left.end() ? mu : pair->second * mu;
   }

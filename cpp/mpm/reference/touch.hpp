@@ -70,7 +70,7 @@ void touch_walls(Step<D>& step) {
           others[n] -= push[n];
           for (int a = 0; a < D; ++a)
             free[a] = ((1.0 - drag) * node.m * node.v[a] + step.dt * (node.f[a] + others[a])) / m;
-          step.hold(i, free);
+          hold(step.walls, i, free);
           const double share = 0.25 * step.dt * s.K;  // of the approach, springs' share_of_approach
           const bool inside = sign > 0.0 ? i[static_cast<std::size_t>(n)] > 0
                                          : i[static_cast<std::size_t>(n)] <

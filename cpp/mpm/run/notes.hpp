@@ -29,7 +29,7 @@ enum class NoteKind {
   failed
 };
 /// Why nodes are not laid anew into a body that has flowed (renew_reference.hpp).
-enum class WhyNodesStay { no, parted, folded, near_wall, failed };
+enum class WhyNodesStay { no, parted, folded, failed };
 inline constexpr std::array note_names = {
     "time step",  "energy of a step", "load",       "outside walls", "volume",
     "left box",   "crowded node",     "unsettled",  "gas volume",    "sparse particles",

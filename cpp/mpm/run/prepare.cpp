@@ -67,6 +67,20 @@ void start_ledger(Domain<D>& domain) {
                           *domain.grid.partition.comm);
 }
 
+/// Walls that hold some bodies on nodes of their own push back others, which do not lie on them.
+template <int D>
+void find_walls_of_bodies(Domain<D>& domain) {
+  TileGrid<D>& grid = domain.grid;
+  if (!grid.walls.exist) return;
+  const auto is_held = [&](const Body<D>& body) {
+    return !body.keeps_nodes() || grid.walls.hold(body.held_by);
+  };
+  if (std::ranges::all_of(domain.bodies, is_held)) return;
+  for (const Body<D>& body : domain.bodies)
+    grid.walls_of_bodies.push_back(is_held(body) ? grid.walls
+                                                 : grid.walls.as_held_by(body.held_by));
+}
+
 }  // namespace
 
 template <int D>
@@ -83,6 +97,7 @@ void prepare(Simulation<D>& simulation) {
   add_contact_columns(domain);
   find_held_bodies(simulation);
   check_in_body(simulation);
+  find_walls_of_bodies(domain);
   place_anchor(domain.grid, domain.bodies);
   std::optional<Owners<D>> owners = give_to_owners(domain.grid, domain.bodies);
   fill_pools(domain.pools, domain.materials, domain.bodies, domain.grid.patches);

@@ -12,8 +12,8 @@
 #include "mpm/grid/blocks.hpp"
 #include "mpm/math/inverse.hpp"
 #include "mpm/run/kept_spins.hpp"
-#include "mpm/run/near_walls.hpp"
 #include "mpm/run/part_sums.hpp"
+#include "mpm/run/particles_that_flow.hpp"
 #include "mpm/run/start_in_body.hpp"
 #include "mpm/run/watch_contact.hpp"
 #include "mpm/step/kept_nodes.hpp"
@@ -123,15 +123,26 @@ std::vector<PartSums> sums_of_nodes(Domain<D>& domain) {
   return sums;
 }
 
+/// The axes about which a body turns freely that walls may hold, a bit each.
+template <int D>
+unsigned free_axes(const Walls<D>& walls) {
+  unsigned axes = D == 2 ? 4u : 7u;
+  for (int a = 0; walls.exist && a < D; ++a)
+    for (const Wall wall : walls.face[a])
+      if (Walls<D>::holds(wall)) axes &= wall == Wall::slip ? 1u << a : 0u;
+  return axes;
+}
+
 /// A rotation for what passes between particles and nodes has taken of the angular momentum.
 template <int D>
 void keep_angular_momentum(Domain<D>& domain, const std::vector<bool>& renewed,
-                           const std::vector<PartSums>& before, const NearWalls<D>& walls) {
+                           const std::vector<PartSums>& before) {
   const std::vector<PartSums> after = sums_of_nodes(domain);
   for_each_block(domain, renewed, [&](const Patch<D>& patch, const NodeBlock<D>& block) {
     const auto body = static_cast<std::size_t>(patch.body);
     const Vector3 lacks = before[body].angular_momentum - after[body].angular_momentum;
-    const Vector3 spin = spin_of(after[body].inertia, lacks, free_axes(domain, walls, body));
+    const Vector3 spin =
+        spin_of(after[body].inertia, lacks, free_axes(domain.grid.walls_of(patch.body)));
     for (int n = 0; n < block.count; ++n) {
       if (!(block.records[n][mass_at] > 0.0)) continue;
       const Vector3 arm = place_of_kept(domain.grid, patch, block, n) - after[body].centre;
@@ -177,7 +188,7 @@ void count_renewal(Domain<D>& domain, const std::vector<bool>& renewed,
 
 /// All that is known of points and nodes comes first: it goes with the lists.
 template <int D>
-void renew(Domain<D>& domain, const std::vector<bool>& renewed, const NearWalls<D>& walls) {
+void renew(Domain<D>& domain, const std::vector<bool>& renewed) {
   const std::vector<PartSums> before = sums_of_nodes(domain);
   std::vector<KeptSpin> spins = gather_kept_spins(domain);
   // Nodes have velocities of the middle of the last step, and so shall the new ones.
@@ -194,7 +205,7 @@ void renew(Domain<D>& domain, const std::vector<bool>& renewed, const NearWalls<
   restore_numbers(domain, others);
   find_followers(domain, renewed);
   find_kept_velocities(domain, renewed);
-  keep_angular_momentum(domain, renewed, before, walls);
+  keep_angular_momentum(domain, renewed, before);
   count_renewal(domain, renewed, before, std::move(spins));
   start_average_in_body(domain);
   points.lay(domain);
@@ -227,7 +238,6 @@ void renew_references(Simulation<D>& simulation) {
   for (std::size_t b = 0; b < renewed.size(); ++b) renewed[b] = is_due(b);
   const std::vector<bool> folded = near_themselves(domain, renewed);
   const std::vector<std::int64_t> parted = count_parted(domain);
-  const NearWalls<D> walls(domain);
   for (std::size_t b = 0; b < renewed.size(); ++b) {
     if (!renewed[b]) continue;
     Body<D>& body = domain.bodies[b];
@@ -235,7 +245,6 @@ void renew_references(Simulation<D>& simulation) {
     const auto why = body.failed > 0             ? WhyNodesStay::failed
                      : are_many(body, parted[b]) ? WhyNodesStay::parted
                      : folded[b]                 ? WhyNodesStay::folded
-                     : walls.comes_near(b)       ? WhyNodesStay::near_wall
                                                  : WhyNodesStay::no;
     if (why == WhyNodesStay::no) continue;
     renewed[b] = false;
@@ -245,7 +254,7 @@ void renew_references(Simulation<D>& simulation) {
                       .value = static_cast<double>(why),
                       .share = share});
   }
-  if (std::ranges::find(renewed, true) != renewed.end()) renew(domain, renewed, walls);
+  if (std::ranges::find(renewed, true) != renewed.end()) renew(domain, renewed);
 }
 
 template void renew_references<2>(Simulation<2>&);

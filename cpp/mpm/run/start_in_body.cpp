@@ -187,7 +187,7 @@ void check_in_body(const Simulation<D>& simulation) {
   check_frame(!box || std::ranges::find(s.grid.walls, Wall::absorbing) == s.grid.walls.end(),
               "walls of the box that absorb yet: leave them out, or give frame = \"updated\"");
   const bool holds =
-      std::ranges::any_of(s.grid.walls, [](Wall w) { return w == Wall::slip || w == Wall::fixed; });
+      std::ranges::any_of(s.grid.walls, [](Wall wall) { return Walls<D>::holds(wall); });
   check_frame(!box || !holds || !restitution_takes(s.contact),
               "walls of the box that are slip or fixed and a restitution yet: leave one out");
   check_frame(!s.grid.outflow, "a region that particles leave: give frame = \"updated\"");

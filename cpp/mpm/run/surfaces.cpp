@@ -20,7 +20,7 @@ template <int D>
 void add_surface(Simulation<D>& simulation, int number, const ContactPointsGiven& given) {
   Domain<D>& domain = simulation.domain;
   require(simulation, Phase::building, "surfaces must be added before prepare()");
-  const Body<D>& body = domain.body_at(number);
+  Body<D>& body = domain.body_at(number);
   const auto check = [&](bool holds, const char* rule) {
     if (!holds) throw std::invalid_argument("surface of " + body.name + ": " + rule);
   };
@@ -33,6 +33,7 @@ void add_surface(Simulation<D>& simulation, int number, const ContactPointsGiven
   check(surfaces.given.empty() || surfaces.spacing == given.spacing,
         "the spacing of points is one for all bodies");
   surfaces.spacing = given.spacing;
+  body.held_by = given.held_by;
   for (std::size_t k = 0; k < n; ++k) {
     GivenPoint<D> point{
         number, given.particles[k], {}, {}, given.areas[k], given.felt_areas[k], given.faces[k]};
@@ -224,6 +225,7 @@ void exchange_points(Domain<D>& domain, StateStream& stream) {
       fine = fine && area >= 0.0 && std::isfinite(area);
     StateStream::check(fine, damaged);
   }
+  drop_bonds_of_failed(domain.surfaces, points);
   lay_points(domain, points);
 }
 

@@ -17,6 +17,7 @@ struct ContactPointsGiven {
   std::span<const double> felt_areas;    // (n,) by which others feel them; or 0
   std::vector<std::int32_t> faces;       // (n,) numbers of the faces of the body
   double spacing;                        // of the points of all bodies [m]
+  unsigned held_by = ~0u;                // of the faces of the box (Body::held_by)
 };
 
 /// Give a body the contact points of its surface; before prepare(). Throws std::invalid_argument

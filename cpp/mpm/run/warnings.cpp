@@ -80,10 +80,8 @@ std::string nodes_stay(const std::string& whose, double per_cent, double why) {
     text << "as " << per_cent << " % of its particles would be more than 1.5 cells apart";
   else if (why == static_cast<double>(WhyNodesStay::folded))
     text << "as it is folded, and they would weld its faces";
-  else if (why == static_cast<double>(WhyNodesStay::failed))
-    text << "as particles of it have failed, and they would weld its pieces";
   else
-    text << "as it is near a wall of the box that is slip or fixed, on which it did not begin";
+    text << "as particles of it have failed, and they would weld its pieces";
   text << ": its steps get shorter, its answers no worse";
   if (why == static_cast<double>(WhyNodesStay::parted))
     text << "; for longer steps give it more particles_per_cell";

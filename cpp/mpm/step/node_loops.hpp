@@ -22,10 +22,11 @@ void for_each_constrained_node(const TileGrid<D>& grid, const Patch<D>& patch, F
   // Found when blocks are cut, so that patches inside the box cost nothing.
   if (!patch.at_wall) return;
   const Index<D> first = grid.first_cell(patch.tile);
+  const Walls<D>& walls = grid.walls_of(patch.body);
   for (int n = 0; n < patch.shape.node_count; ++n) {
     Index<D> node = patch.shape.index(n);
     for (int a = 0; a < D; ++a) node[a] += first[a];
-    if (const unsigned constrained = grid.walls.constrained_axes(node)) f(n, constrained);
+    if (const unsigned constrained = walls.constrained_axes(node)) f(n, constrained);
   }
 }
 

@@ -39,9 +39,11 @@ Vec<double, D> mirrored_place(const TileGrid<D>& grid, std::uint8_t mirrors, Vec
   return place;
 }
 
-/// f(place or image) for a place and its images no farther from the walls than it may be felt.
+/// f(place or image) for a place and its images behind walls that hold a body, no farther from
+/// these than the place may be felt.
 template <int D, class F>
-void for_each_image(const TileGrid<D>& grid, const Vec<double, D>& place, double reach, F&& f) {
+void for_each_image(const TileGrid<D>& grid, int body, const Vec<double, D>& place, double reach,
+                    F&& f) {
   f(PlaceOrImage<D>{0, place});
   if (!grid.walls.exist) return;
   std::array<PlaceOrImage<D>, D == 3 ? 27 : 9> found;  // beyond one wall at most along each axis
@@ -50,8 +52,7 @@ void for_each_image(const TileGrid<D>& grid, const Vec<double, D>& place, double
   for (int a = 0; a < D; ++a) {
     const std::size_t before = count;
     for (const int side : {0, 1}) {
-      const Wall wall = grid.walls.face[a][side];
-      if (wall != Wall::slip && wall != Wall::fixed) continue;
+      if (!Walls<D>::holds(grid.walls_of(body).face[a][side])) continue;
       const auto mirror = static_cast<std::uint8_t>(1u << (side * D + a));
       const Vec<double, D> image = mirrored_place(grid, mirror, place);
       if (!(0.5 * std::abs(image[a] - place[a]) < reach)) continue;

@@ -13,17 +13,20 @@
 namespace mpm {
 namespace {
 
-/// The faces of the box that a point overlaps by more than that, o = e / 2 - z:
+/// The faces of the box that push a point of a body back which overlaps them by more than that,
+/// o = e / 2 - z:
 /// f(opposite, o, normal).
 template <int D, class F>
-void for_each_wall(const Domain<D>& domain, const Vec<double, D>& place, double least, F&& f) {
+void for_each_wall(const Domain<D>& domain, int body, const Vec<double, D>& place, double least,
+                   F&& f) {
   const TileGrid<D>& grid = domain.grid;
-  if (!grid.walls.touch()) return;
+  const Walls<D>& walls = grid.walls_of(body);
+  if (!walls.touch()) return;
   for (int axis = D - 1; axis >= 0; --axis)  // by the number of the opposite
     for (const int side : {1, 0}) {
-      if (grid.walls.face[axis][side] != Wall::contact) continue;
+      if (walls.face[axis][side] != Wall::contact) continue;
       const double x = place[axis] - grid.origin[axis];
-      const double length = grid.cell_size * grid.walls.cells[static_cast<std::size_t>(axis)];
+      const double length = grid.cell_size * walls.cells[static_cast<std::size_t>(axis)];
       const double height = side == 0 ? x : length - x;
       const double overlap = 0.5 * domain.surfaces.spacing - height;
       if (!(overlap > least)) continue;
@@ -41,11 +44,13 @@ SurfaceTouch<D> touch_of_face(const Domain<D>& domain, int body, std::uint32_t p
   SurfaceTouch<D> touch;
   touch.point = point;
   touch.opposite = face;
+  touch.arm = Vec<double, D>::zero();
   touch.overlap = overlap - set_back;
   touch.stiffness = stiffness_at_wall(surfaces.points[point].area, domain.grid.cell_size,
                                       1.0 / domain.body_at(body).stiffness);
   touch.slope = normal;
-  touch.arm = (overlap - 0.5 * surfaces.spacing) * normal;  // -z n
+  if (surfaces.points[point].face != no_face)
+    touch.arm = (overlap - 0.5 * surfaces.spacing) * normal;  // -z n
   return touch;
 }
 
@@ -87,7 +92,7 @@ template <int D>
 double sum_of_weights(const Domain<D>& domain, const SurfacePart<D>& part, const NearPoints& near) {
   const Surfaces<D>& surfaces = domain.surfaces;
   double sum = 0.0;
-  for_each_image(domain.grid, surfaces.places[near.point], felt_within(surfaces),
+  for_each_image(domain.grid, near.body, surfaces.places[near.point], felt_within(surfaces),
                  [&](const PlaceOrImage<D>& here) {
                    sum += sum_of_weights(surfaces, part, near, here.place);
                  });
@@ -120,7 +125,7 @@ void add_touch_of_body(const Domain<D>& domain, SurfacePart<D>& part, const Face
                                        1.0 / domain.body_at(near.body).stiffness);
   touch.first_felt = static_cast<std::uint32_t>(part.felt.size());
   Vec<double, D> slopes = Vec<double, D>::zero();
-  for_each_image(domain.grid, surfaces.places[near.point], felt_within(surfaces),
+  for_each_image(domain.grid, near.body, surfaces.places[near.point], felt_within(surfaces),
                  [&](const PlaceOrImage<D>& here) {
                    for (std::size_t f = 0; f < all.faces.size(); ++f) {
                      const double by_face = share_of_face(all.sums[f], sum);
@@ -192,7 +197,7 @@ void find_overlaps(const Domain<D>& domain, SurfacePart<D>& part) {
   for (std::uint32_t c = part.first_point; c < part.first_point + part.point_count; ++c) {
     // Bodies that do not deform are held by faces as a whole.
     if (!part.as_one && surfaces.points[c].area > 0.0)
-      for_each_wall(domain, surfaces.places[c], least,
+      for_each_wall(domain, part.body, surfaces.places[c], least,
                     [&](Opposite face, double overlap, const Vec<double, D>& normal) {
                       const double back = set_back_of(surfaces, c, face);
                       if (overlap - back > least)
@@ -240,7 +245,7 @@ void set_back_overlaps(Domain<D>& domain) {
         if (overlap > seen) ++told.particles;
       };
       if (!part.as_one && surfaces.points[c].area > 0.0)
-        for_each_wall(domain, surfaces.places[c], 0.0,
+        for_each_wall(domain, part.body, surfaces.places[c], 0.0,
                       [&](Opposite face, double overlap, const auto&) { set_back(face, overlap); });
       for_each_body(domain, part, c, least_sum, next, part.face_sums, [&](const FacesNear& all) {
         set_back(all.faces.front().body, surfaces.spacing * (1.0 - SurfacePoint<D>(all.sum).zeta));
@@ -264,7 +269,7 @@ void set_back_more(Domain<D>& domain, const std::vector<KeptOfContact<double>>& 
         if (overlap > seen) more.push_back({c, opposite, overlap});
       };
       if (!part.as_one && surfaces.points[c].area > 0.0)
-        for_each_wall(domain, surfaces.places[c], 0.0,
+        for_each_wall(domain, part.body, surfaces.places[c], 0.0,
                       [&](Opposite face, double overlap, const auto&) { look(face, overlap); });
       for_each_body(domain, part, c, least_sum, next, part.face_sums, [&](const FacesNear& all) {
         const Opposite body = all.faces.front().body;

@@ -26,7 +26,7 @@ double onset_now(const Domain<D>& domain, const SurfacePart<D>& part, const Surf
 template <int D>
 double friction_with(const Domain<D>& domain, int body, Opposite opposite) {
   if (is_wall(opposite))
-    return domain.grid.walls.friction[axis_of_wall(opposite)][side_of_wall(opposite)];
+    return domain.grid.walls_of(body).friction[axis_of_wall(opposite)][side_of_wall(opposite)];
   return law_of(domain.contact_settings, domain.body_at(body).group, domain.body_at(opposite).group)
       .friction;
 }

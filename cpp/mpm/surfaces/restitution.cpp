@@ -36,7 +36,8 @@ PairLaw law_between(const Domain<D>& domain, const ActingBetween<D>& pair) {
   const ContactSettings& settings = domain.contact_settings;
   if (!is_wall(pair.b))
     return law_of(settings, domain.body_at(pair.a).group, domain.body_at(pair.b).group);
-  const double friction = domain.grid.walls.friction[axis_of_wall(pair.b)][side_of_wall(pair.b)];
+  const Walls<D>& walls = domain.grid.walls_of(pair.a);
+  const double friction = walls.friction[axis_of_wall(pair.b)][side_of_wall(pair.b)];
   return {friction, false, 0.0, settings.restitution};
 }
 

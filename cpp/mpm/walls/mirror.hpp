@@ -19,7 +19,7 @@ void for_each_ghost_node(const TileGrid<D>& grid, const Patch<D>& patch, F&& f) 
   for (int n = 0; n < shape.node_count; ++n) {
     Index<D> node = shape.index(n);
     for (int a = 0; a < D; ++a) node[a] += first[a];
-    const auto image = grid.walls.image(node);
+    const auto image = grid.walls_of(patch.body).image(node);
     if (!image) continue;
     Index<D> in_block = image->node;
     for (int a = 0; a < D; ++a) in_block[a] -= first[a];

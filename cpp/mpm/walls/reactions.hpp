@@ -68,7 +68,7 @@ void add_folding(const TileGrid<D>& grid, const Patch<D>& patch, const Reaction<
     const Index<D> place = index_of(grid, patch, node);
     for (int a = 0; a < D; ++a)
       if (of_image[a] != s[a])
-        to.faces.add(grid.walls.faces_turning(place, a), a, of_image[a] - s[a]);
+        to.faces.add(grid.walls_of(patch.body).faces_turning(place, a), a, of_image[a] - s[a]);
   });
 }
 
@@ -84,7 +84,7 @@ void add_holding(const TileGrid<D>& grid, const Patch<D>& patch, const double* o
       if (!(constrained >> a & 1u)) s[a] = 0.0;
     const Index<D> place = index_of(grid, patch, node);
     to.add(in_space<D>(grid.position_of(place)), s,
-           [&](int axis) { return grid.walls.faces_holding(place, axis); });
+           [&](int axis) { return grid.walls_of(patch.body).faces_holding(place, axis); });
   });
 }
 

@@ -39,6 +39,33 @@ struct Walls {
   double friction[D][2] = {};  // of faces that touch, Coulomb's coefficient
   bool odd_at_fixed = false;   // (BasisModel)
 
+  /// Coulomb's coefficient of a face on which nothing slides.
+  static constexpr double rough = 1e6;
+
+  /// Does a face hold what lies on it: as a plane of symmetry, or fixed?
+  MPM_HD static bool holds(Wall wall) { return wall == Wall::slip || wall == Wall::fixed; }
+  /// Do all such faces hold a body, by the bits 2 axis + side of those that do?
+  bool hold(unsigned faces) const {
+    bool all = true;
+    for (int a = 0; a < D; ++a)
+      for (int side = 0; side < 2; ++side)
+        all = all && (!holds(face[a][side]) || (faces >> (2 * a + side) & 1u) != 0);
+    return all;
+  }
+  /// The walls of a body that some of those faces do not hold (bits 2 axis + side are of those that
+  /// do): it does not lie on these, which push back what comes to them, on a fixed one without
+  /// sliding.
+  Walls as_held_by(unsigned faces) const {
+    Walls walls = *this;
+    for (int a = 0; a < D; ++a)
+      for (int side = 0; side < 2; ++side) {
+        if (!holds(face[a][side]) || (faces >> (2 * a + side) & 1u)) continue;
+        walls.friction[a][side] = face[a][side] == Wall::fixed ? rough : 0.0;
+        walls.face[a][side] = Wall::contact;
+      }
+    return walls;
+  }
+
   MPM_HD bool absorb() const { return any(Wall::absorbing); }
   MPM_HD bool touch() const { return any(Wall::contact); }
 

@@ -7,7 +7,9 @@ UPDATED = "updated"
 """In space: particles pass them."""
 MATERIAL = "material"
 """In the body: they keep its motion."""
-FRAMES = (UPDATED, MATERIAL)
+AUTO = "auto"
+"""In the body where its material and what it touches allow that, else in space."""
+FRAMES = (UPDATED, MATERIAL, AUTO)
 
 ALONG, ALONG_FEW = 2, 3
 """Particles per cell along each direction, and those of balls of few cells in a frame of their own:

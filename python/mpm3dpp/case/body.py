@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
-from pydantic import model_validator
+from pydantic import PrivateAttr, model_validator
 
 from mpm3dpp.base.damping import Damping
 from mpm3dpp.base.errors import violation
@@ -63,9 +63,10 @@ class Body(CaseModel):
             or formulas of the time t; None for none.
         damping: what damps its motion beside its material, in proportion to the mass or locally;
             None for nothing.
-        frame: where its nodes lie: in space, "updated", where any flow is possible; or in the body,
-            "material", where they keep their motion and nothing of it is lost, as of elastic bodies
-            of few cells that vibrate, spin, hit or roll (no fluids, no failure yet).
+        frame: where its nodes lie: in space, "updated", where any flow is possible; in the body,
+            "material", where they keep its motion and nothing of it is lost, as of bodies of few
+            cells that vibrate, spin, hit or roll (no fluids, nothing that erodes); or, "auto", in
+            the body where its material, what it may touch and the rest of the case allow that.
         motion: "fixed", or a motion that the body has whatever acts on it; it does not deform
             then; None for a body that is free to move.
     """
@@ -85,6 +86,8 @@ class Body(CaseModel):
     damping: Damping | None = None
     frame: Annotated[str, Choice(FRAMES)] = UPDATED
     motion: MaybeMotion = None
+
+    _auto: bool = PrivateAttr(False)  # Its frame is chosen (choose_frames.py).
 
     @model_validator(mode="after")
     def _one_spacing(self) -> Body:

@@ -24,13 +24,15 @@ from mpm3dpp.materials.catalogue import catalogue
 
 from . import file as case_file
 from .body import Body
+from .box import CONTACT
 from .changes import paths_of, with_changes
 from .checks import check_case
 from .choices import with_choices, with_picture
+from .choose_frames import choose_frames
 from .content import PRESETS, content_of, hash_of, with_preset
 from .detonation import Detonation
 from .frame import all_in_bodies
-from .grid import CONTACT, Grid
+from .grid import Grid
 from .loads import Load
 from .material import Material as Material  # also for those who import it from here
 from .parts import Contact, Output, Run
@@ -73,6 +75,7 @@ class Case(CaseModel):
     _source: Path | None = PrivateAttr(None)
     _file_path: str = PrivateAttr("")
     _lines: dict[KeyPath, int] = PrivateAttr(default_factory=dict)
+    _why_in_space: dict[str, str] = PrivateAttr(default_factory=dict)
 
     @classmethod
     def complete(cls, data: Any) -> Any:
@@ -90,11 +93,20 @@ class Case(CaseModel):
         Raises:
             ValueError: a violation, of which the sentence is made where the case is read or run.
         """
+        self._why_in_space = choose_frames(self)
         flows = any(self.flows(part) for part in self.parts())
         in_space = not all_in_bodies(self)
         chosen = with_choices(self.grid.basis, self.run, self.contact, flows, in_space)
         self.__dict__ |= chosen | with_picture(self)
         check_case(self)
+
+    @property
+    def why_in_space(self) -> dict[str, str]:
+        """Why the nodes of an entry lie in space, by its name; "" where they lie in the body.
+
+        Of those alone whose frame is "auto" and that deform.
+        """
+        return dict(self._why_in_space)
 
     @property
     def text(self) -> str:

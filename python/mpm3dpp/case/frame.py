@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from pydantic_core import PydanticCustomError
@@ -12,15 +13,12 @@ from mpm3dpp import _core
 from mpm3dpp.base.errors import violation
 from mpm3dpp.base.frames import MATERIAL, UPDATED
 
+from .box import HOLDING
 from .pairs import presses
 
 if TYPE_CHECKING:
     from .case import Case
     from .material import Material
-
-
-HOLDING = {"slip", "fixed"}
-"""Walls of which bodies on nodes of their own have images, if they start there."""
 
 
 def in_body(case: Case) -> list[str]:
@@ -58,12 +56,12 @@ def check_frames(case: Case) -> Iterator[PydanticCustomError]:
         yield violation(rule, remedy, path=("run", "short_wave_damping"))
     if not own:
         return
-    if case.contact_enabled:
+    if case.contact.enabled:
         yield from _at_nodes(case)
-    of_case = next(_of_case(case), None)
+    of_case = next(chain(_against_others(case), against_all(case)), None)
     for name in own:
         # One each: the next may follow from it. What is of the case is told of the first.
-        found = next(_of_body(case, name), of_case if name == own[0] else None)
+        found = next(against_body(case, name), of_case if name == own[0] else None)
         if found is not None:
             rule, remedy = found
             yield violation(rule, remedy, value=MATERIAL, path=(*case.part_path(name), "frame"))
@@ -79,8 +77,8 @@ def _restitution(case: Case) -> tuple[str | int, ...]:
     return ()
 
 
-def _of_body(case: Case, name: str) -> Iterator[tuple[str, str]]:
-    """Yield what its own table has that does not go with it, each with the remedy."""
+def against_body(case: Case, name: str) -> Iterator[tuple[str, str]]:
+    """Yield what the table of a body, or entry of grains, has against it, with the remedy."""
     updated = f'give frame = "{UPDATED}"'
     part = case.parts()[name]
     if case.is_rigid(name):
@@ -104,16 +102,16 @@ def _of_what_is_loose(material: Material, key: str) -> tuple[str, str]:
     updated, what, without = f'give frame = "{UPDATED}"', "", ""
     eos = material.eos
     if eos is not None and eos.parameters.get("spall_strength"):
-        what = "the spall_strength of its equation of state"
+        what = "spalls by the spall_strength of its equation of state"
         without = f"give {key}.eos.{eos.model}.spall_strength = 0 if it does not spall"
     else:
-        what = f"its strength {material.strength.model}"
-    rule = f"does not go with {key}, which flows or spalls by {what}: neighbours stay neighbours"
+        what = f"flows by its strength {material.strength.model}"
+    rule = f"does not go with {key}, which {what}: neighbours stay neighbours"
     return f"{rule} there", f"{updated}, or {without}" if without else updated
 
 
-def _at_nodes(case: Case) -> Iterator[PydanticCustomError]:
-    """Refuse what `contact` has that is for contact at nodes: surfaces do without."""
+def keys_at_nodes(case: Case) -> list[str]:
+    """Return the keys of `contact` that are given and for contact at nodes: surfaces do without."""
     given, plain = case.contact, type(case.contact)()
     wrong = [
         key
@@ -122,25 +120,25 @@ def _at_nodes(case: Case) -> Iterator[PydanticCustomError]:
     ]
     if "response" in given.model_fields_set and given.response != "springs":
         wrong.append("response")
-    for key in wrong:
+    return wrong
+
+
+def _at_nodes(case: Case) -> Iterator[PydanticCustomError]:
+    """Refuse these keys."""
+    for key in keys_at_nodes(case):
         rule = f'is for contact at nodes, and bodies with frame = "{MATERIAL}" have none'
         remedy = f'leave it out, or give frame = "{UPDATED}"'
-        yield violation(rule, remedy, value=getattr(given, key), path=("contact", key))
+        yield violation(rule, remedy, value=getattr(case.contact, key), path=("contact", key))
 
 
-def _of_case(case: Case) -> Iterator[tuple[str, str]]:
-    """Yield what the rest of the case has, likewise."""
-    frame = f'frame = "{UPDATED}"'
-    updated = f"give {frame}"
+def against_all(case: Case) -> Iterator[tuple[str, str]]:
+    """Yield what the rest of the case has against the frame, likewise."""
+    updated = f'give frame = "{UPDATED}"'
     if case.grid.basis == "linear":
         yield "needs gradients without jumps", 'give grid.basis = "quadratic_bspline"'
-    others = [one for one in case.parts() if not case.is_rigid(one) and one not in in_body(case)]
     if case.contact.bonded and case.body_count > 1:
         remedy = "give bonded = true in [[contact.pair]], which holds what touches at the start"
         yield "does not go with contact.bonded, of bodies that share nodes", remedy
-    if case.contact_enabled and others:
-        rule = f"does not go with contact with {others[0]}, which has another frame, yet"
-        yield rule, f'give all frame = "{MATERIAL}", contact.enabled = false, or {frame}'
     if case.contact_enabled and presses(case):
         rule = 'does not go with contact.interference = "pressed" yet'
         yield rule, f"leave it out, or {updated}"
@@ -153,3 +151,12 @@ def _of_case(case: Case) -> Iterator[tuple[str, str]]:
         yield "does not go with grid.outflow_box", f"leave it out, or {updated}"
     if case.grid.coarsening is not None:
         yield "does not go with grid.coarsening", f"leave it out, or {updated}"
+
+
+def _against_others(case: Case) -> Iterator[tuple[str, str]]:
+    """Yield the first body in the other frame that is touched, likewise."""
+    others = [one for one in case.parts() if not case.is_rigid(one) and one not in in_body(case)]
+    if case.contact_enabled and others:
+        rule = f"does not go with contact with {others[0]}, which has another frame, yet"
+        remedy = f'give all frame = "{MATERIAL}", contact.enabled = false, or frame = "{UPDATED}"'
+        yield rule, remedy

@@ -11,10 +11,10 @@ import numpy as np
 from mpm3dpp.base.errors import key_text
 from mpm3dpp.base.frames import MATERIAL, UPDATED
 from mpm3dpp.base.model import CaseModel
+from mpm3dpp.case.box import CONTACT
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.detonation import EXPLOSIVE
 from mpm3dpp.case.frame import in_body
-from mpm3dpp.case.grid import CONTACT
 from mpm3dpp.case.initial import GEOSTATIC
 from mpm3dpp.case.moduli import damping_viscosity, moduli_of
 from mpm3dpp.ranks.world import World
@@ -37,7 +37,7 @@ from .surface_notes import surface_notes
 from .surface_points import MOST_CFL, surfaces_touch
 from .transfer_notes import transfer_notes
 from .unit_notes import unit_notes
-from .wall_notes import off_walls, wall_notes
+from .wall_notes import wall_notes
 
 _INCOMPRESSIBLE = 0.45
 _STIFFEST = 0.499
@@ -61,7 +61,6 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *bond_notes(case),
         *detonation_notes(case, bodies, world),
         *wall_notes(case),
-        *off_walls(case, bodies),
         *surface_notes(case, bodies),
         *transfer_notes(case),
         *friction_notes(case),

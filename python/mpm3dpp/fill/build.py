@@ -28,7 +28,6 @@ from .settling import settling_mistakes
 from .slices import number_of_all, survey_of_slices
 from .surface_notes import bond_mistakes
 from .velocities import start_velocities
-from .wall_notes import wall_mistakes
 
 MASS_WARNING = 0.05  # Relative mass error above which a run warns ...
 MASS_ERROR = 0.5  # ... and above which it does not start.
@@ -60,7 +59,7 @@ def build(case: Case, world: World | None = None) -> Filled:
     filled = fill_all(case, world)
     mistakes = [one for part in filled.parts.values() for one in box_mistakes(case, part, world)]
     mistakes += overlap_mistakes(case, filled, world)
-    mistakes += [*wall_mistakes(case, filled), *bond_mistakes(case, filled)]
+    mistakes += bond_mistakes(case, filled)
     filled.interferences = interferences(case)
     mistakes += settling_mistakes(case, filled)
     if not mistakes:

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.case.box import FACES as FACES_OF_BOX
 from mpm3dpp.case.case import Case
-from mpm3dpp.case.grid import FACES as FACES_OF_BOX
 from mpm3dpp.case.matter import have_springs
 from mpm3dpp.case.pairs import is_bonded, is_pressed
 from mpm3dpp.case.parts import PRESSED

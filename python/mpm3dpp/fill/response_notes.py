@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from mpm3dpp import _core
 from mpm3dpp.base.errors import key_text
+from mpm3dpp.case.box import CONTACT
 from mpm3dpp.case.case import Case
-from mpm3dpp.case.grid import CONTACT
 from mpm3dpp.case.matter import liquids_that_meet, parts_by_matter
 
 

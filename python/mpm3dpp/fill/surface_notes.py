@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from mpm3dpp.base.errors import CaseError, key_text
 from mpm3dpp.base.frames import UPDATED
+from mpm3dpp.case.box import CONTACT, FACES
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.frame import in_body
-from mpm3dpp.case.grid import CONTACT, FACES
 
 from .parts import Filled
 
@@ -83,8 +83,9 @@ def _meetings(case: Case, bodies: Filled, name: str) -> Iterator[tuple[str, floa
             continue
         way = _middle(bodies, other) - _middle(bodies, name)
         approach = own - theirs
-        if float(way @ approach) > 0.0:
-            yield key_text(case.part_path(other)), float(np.linalg.norm(approach))
+        closing = float(way @ approach) / max(float(np.linalg.norm(way)), 1e-300)
+        if closing > 0.0:
+            yield key_text(case.part_path(other)), closing
     for face, wall in enumerate(case.grid.walls):
         axis, at_end = divmod(face, 2)
         if wall == CONTACT:

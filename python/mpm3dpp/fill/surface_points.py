@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from mpm3dpp import _core
 from mpm3dpp.base.frames import MATERIAL
-from mpm3dpp.case.frame import HOLDING
-from mpm3dpp.case.grid import CONTACT
+from mpm3dpp.case.box import CONTACT, HOLDING
 from mpm3dpp.case.load_pieces import Near, candidates, nearest_particles
 from mpm3dpp.ranks.world import World, agreed
 from mpm3dpp.shapes.contact_points import (
     ContactPoints,
+    Plane,
     points_of_ball,
     points_of_particles,
     points_of_shape,
@@ -46,7 +46,7 @@ def point_spacing(case: Case, parts: Iterable[FilledPart]) -> float | None:
     """
     own = [part.spacing for part in parts if case.parts()[part.name].frame == MATERIAL]
     touches = case.contact.enabled and not case.contact.bonded  # A body alone may touch itself.
-    if not own or not (touches or CONTACT in case.grid.walls):
+    if not own or not (touches or {CONTACT, *HOLDING} & set(case.grid.walls)):
         return None
     return min(own) / REACHES
 
@@ -83,15 +83,16 @@ def add_surfaces(
     if not meets and case.parts()[part.name].frame != MATERIAL:
         return
     if part.balls is None:
-        found = [(number, _of_body(case, part, particles.positions, spacing, sharing))]
+        carried, held = _of_body(case, part, particles.positions, spacing, sharing)
+        found = [(number, carried, held)]
     else:
         number, world = number + sharing.first, sharing.world
         own = agreed(
             lambda: list(_of_balls(case, part, number, particles, spacing, sharing)), world
         )
         found = own if world is None else [x for told in world.comm.allgather(own) for x in told]
-    for of_body, carried in found:
-        core.add_surface(of_body, *carried, spacing)
+    for of_body, carried, held in found:
+        core.add_surface(of_body, *carried, spacing, held)
 
 
 @dataclass(frozen=True)
@@ -116,19 +117,24 @@ that they push for and by which they are felt [m^2; in 2D m], and the faces."""
 
 def _of_body(
     case: Case, part: FilledPart, positions: Array, spacing: float, sharing: Sharing
-) -> Carried:
+) -> tuple[Carried, int]:
+    """Return what carries the points of a body, and the faces of the box that hold it."""
+    planes = _holding_planes(case)
     shape = case.body[part.name].shape
     along, depth = spacing / ALONG[case.grid.dimension], 0.5 * spacing
     near = sharing.near
     if shape is not None:
-        points = points_of_shape(shape, along, depth, _held_planes(case))
+        points, lies_on = points_of_shape(shape, along, depth, list(planes.values()))
     else:
         if near is not None and sharing.world is not None:
             positions, near = np.concatenate(sharing.world.comm.allgather(positions)), None
-        points = points_of_particles(positions, part.spacing, along, depth)
+        points, lies_on = points_of_particles(
+            positions, part.spacing, along, depth, list(planes.values())
+        )
     numbers, positions = candidates(points.places, positions, part.spacing, near)
     owners, *carried = _carried(case, part, positions, points, depth)
-    return numbers[owners].tolist(), *carried
+    held = sum(1 << face for face, plane in planes.items() if plane in lies_on)
+    return (numbers[owners].tolist(), *carried), held
 
 
 def _of_balls(
@@ -138,8 +144,8 @@ def _of_balls(
     particles: Particles,
     spacing: float,
     sharing: Sharing,
-) -> Iterable[tuple[int, Carried]]:
-    """Yield the number of each ball here, and what carries its points."""
+) -> Iterable[tuple[int, Carried, int]]:
+    """Yield the number of each ball here, what carries its points, and that no face holds it."""
     assert part.balls is not None
     ends = np.cumsum(particles.counts)
     for k, (begin, end) in enumerate(zip(ends - particles.counts, ends, strict=True)):
@@ -149,6 +155,7 @@ def _of_balls(
         yield (
             number + k,
             _carried(case, part, particles.positions[begin:end], points, 0.5 * spacing),
+            0,
         )
 
 
@@ -175,11 +182,10 @@ def _carried(
     )
 
 
-def _held_planes(case: Case) -> list[tuple[int, float]]:
-    """Return axis and place [m] of the slip and fixed walls, behind which bodies go on."""
-    grid = case.grid
-    if grid.box is None:
-        return []
-    corners = grid.box.lower, grid.box.upper
-    faces = [divmod(face, 2) for face, wall in enumerate(grid.walls) if wall in HOLDING]
-    return [(axis, corners[at_end][axis]) for axis, at_end in faces]
+def _holding_planes(case: Case) -> dict[int, Plane]:
+    """Return the slip and fixed faces of the box: bodies that lie on them go on behind them."""
+    box = case.grid.box
+    if box is None:
+        return {}
+    faces = [face for face, wall in enumerate(case.grid.walls) if wall in HOLDING]
+    return {face: (face // 2, (box.lower, box.upper)[face % 2][face // 2]) for face in faces}

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import model_validator
+from pydantic import PrivateAttr, model_validator
 
 from mpm3dpp.base.damping import Damping
 from mpm3dpp.base.errors import CaseError, Path, violation
@@ -110,7 +110,8 @@ class Grains(CaseModel):
             mass, D numbers or formulas of the time t; None for none.
         damping: what damps their motion beside their material, in proportion to the mass or
             locally; None for nothing.
-        frame: where their nodes lie, "updated" (in space) or "material" (in each of them).
+        frame: where their nodes lie, "updated" (in space), "material" (in each of them) or "auto"
+            (as body.NAME.frame).
     """
 
     material: Text
@@ -127,6 +128,8 @@ class Grains(CaseModel):
     force: TotalForce | None = None
     damping: Damping | None = None
     frame: Annotated[str, Choice(FRAMES)] = UPDATED
+
+    _auto: bool = PrivateAttr(False)  # Their frame is chosen (case/choose_frames.py).
 
     @model_validator(mode="after")
     def _one_way(self) -> Grains:

@@ -8,7 +8,7 @@ from collections import Counter
 from typing import Any
 
 from mpm3dpp.base.frames import MATERIAL
-from mpm3dpp.case.grid import CONTACT
+from mpm3dpp.case.box import CONTACT
 from mpm3dpp.io.manifest import Manifest
 
 _PAIRS_SHOWN = 10

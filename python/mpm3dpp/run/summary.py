@@ -22,6 +22,7 @@ from mpm3dpp.shapes.shells import SHELLS
 
 from .memory import memory_bytes, occupied_cells, process_bytes, rank_line
 from .summary_conditions import (
+    chosen_frames,
     condition_lines,
     load_in_words,
     motion_in_words,
@@ -214,7 +215,7 @@ def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
             contact = f"between surfaces, restitution {case.contact.restitution:g}"
         contact += f", friction {case.contact.friction:g}"
     elif surfaces_touch(case, bodies.parts.values()):
-        contact = f"of surfaces with walls, restitution {case.contact.restitution:g}"
+        contact = f"of surfaces with themselves and walls, restitution {case.contact.restitution:g}"
     lines += [
         f"total: {particles:,} particles, mass {mass:.6g} kg{per_metre}, "
         f"memory about {process_bytes(core, frames) / 2**20:,.0f} MiB, of which the core "
@@ -222,6 +223,7 @@ def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
         *([rank_line(core, ranks)] if ranks > 1 else []),
         f"grid: {case.grid.dimension}D, cells of {case.grid.cell_size:.4g} m, {cells:,} occupied, "
         f"{bounds}, {case.grid.basis} basis",
+        *chosen_frames(case),
         *condition_lines(case),
         f"contact: {contact}",
         f"time: {_stepping(case)}, {_step_rule(case, bodies)}"

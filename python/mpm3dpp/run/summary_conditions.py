@@ -7,16 +7,21 @@ import math
 from collections.abc import Sequence
 
 from mpm3dpp.base.expression import Expression
+from mpm3dpp.base.frames import MATERIAL, UPDATED
 from mpm3dpp.base.time_functions import TimeFunction, highest
+from mpm3dpp.case.box import CONTACT, FACES
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.dampings import dampings_of
-from mpm3dpp.case.grid import CONTACT, FACES, GridCoarsening
+from mpm3dpp.case.grid import GridCoarsening
 from mpm3dpp.case.initial import GEOSTATIC, Initial
 from mpm3dpp.case.initial_fields import STRESS
 from mpm3dpp.case.loads import KINDS
 from mpm3dpp.plots.labels import scaled
 
 Quantity = float | TimeFunction | Expression
+
+_NAMES_SHOWN = 4
+_IN_BODY = f'frame: "{MATERIAL}" for {{}}: nodes lie in each body and keep its motion'
 
 
 def in_words(value: Quantity, unit: str) -> str:
@@ -50,6 +55,19 @@ def vector_in_words(values: Sequence[Quantity], unit: str) -> str:
 
 def _number(value: float, unit: str) -> str:
     return scaled(value, unit, 6).strip() if value else f"0 {unit}"
+
+
+def chosen_frames(case: Case) -> list[str]:
+    """Return a line for each choice of a frame: for which bodies, and why it is "updated"."""
+    names: dict[str, list[str]] = {}
+    for name, why in case.why_in_space.items():
+        names.setdefault(why, []).append(name)
+    lines = []
+    for why, found in names.items():
+        more = len(found) - _NAMES_SHOWN
+        whose = ", ".join(found[:_NAMES_SHOWN]) + (f" and {more} more" if more > 0 else "")
+        lines.append(f'frame: "{UPDATED}" for {whose}, as {why}' if why else _IN_BODY.format(whose))
+    return lines
 
 
 def motion_in_words(case: Case, body: str) -> str:

@@ -20,6 +20,8 @@ from .surface_parts import Surface, circle, sphere
 from .surfaces import surface
 
 Array = NDArray[np.float64]
+Plane = tuple[int, float]
+"""The axis that it lies across, and its place along it [m]."""
 FacesOf = Callable[[Array, Array, float], NDArray[np.int64]]
 """Of the places of points [m], their normals and their distance [m]."""
 
@@ -49,21 +51,40 @@ class ContactPoints(NamedTuple):
 
 
 def points_of_shape(
-    shape: Shape, spacing: float, depth: float, planes: Sequence[tuple[int, float]] = ()
-) -> ContactPoints:
-    """Return the contact points of a shape.
+    shape: Shape, spacing: float, depth: float, planes: Sequence[Plane] = ()
+) -> tuple[ContactPoints, list[Plane]]:
+    """Return the contact points of a shape, and the planes on which a face of it lies.
 
     Args:
         shape: any.
         spacing: about the distance of the points [m].
         depth: how far they lie behind the surface [m].
-        planes: axis and place [m] of those on which the surface is none: a body goes on there.
+        planes: those on which a face is no surface: a body goes on there.
     """
-    drawn = surface(shape, "all", spacing)
+    drawn, lies_on = _off_planes(surface(shape, "all", spacing), planes, 1e-3 * spacing)
+    return _inside(drawn, spacing, depth, _beside_each_other), lies_on
+
+
+def _off_planes(
+    drawn: Surface, planes: Sequence[Plane], within: float
+) -> tuple[Surface, list[Plane]]:
+    """Return what of a surface lies on none of some planes, and those on which a face of it lies.
+
+    Args:
+        drawn: the surface.
+        planes: those on which a face is no surface.
+        within: how near to a plane a face lies on it [m].
+    """
+    lies_on = []
     for axis, place in planes:
-        own = abs(drawn.points[:, axis] - place) > 1e-3 * spacing
-        drawn = Surface(drawn.points[own], drawn.areas[own])
-    return _inside(drawn, spacing, depth, _beside_each_other)
+        along = abs(drawn.areas[:, axis]) > _ONE_FACE * np.linalg.norm(drawn.areas, axis=1)
+        on = along & (abs(drawn.points[:, axis] - place) < within)
+        # A ball touches a plane by a point.
+        if on.sum() < drawn.points.shape[1]:
+            continue
+        lies_on.append((axis, place))
+        drawn = Surface(drawn.points[~on], drawn.areas[~on])
+    return drawn, lies_on
 
 
 def points_of_ball(centre: Array, radius: float, spacing: float, depth: float) -> ContactPoints:
@@ -80,17 +101,18 @@ def points_of_ball(centre: Array, radius: float, spacing: float, depth: float) -
 
 
 def points_of_particles(
-    positions: Array, edge: float, spacing: float, depth: float
-) -> ContactPoints:
-    """Return those of a body that is known by its particles alone.
+    positions: Array, edge: float, spacing: float, depth: float, planes: Sequence[Plane] = ()
+) -> tuple[ContactPoints, list[Plane]]:
+    """Return those of a body that is known by its particles alone, and the planes that it lies on.
 
     Args:
         positions: of its particles [m], shape (n, D).
         edge: of the particles' cubes [m].
         spacing: about the distance of the points [m].
         depth: how far they lie behind the surface [m].
+        planes: as of a shape; faces of particles lie on one to a quarter of their edge.
     """
-    drawn = faces(positions, edge, "all")
+    drawn, lies_on = _off_planes(faces(positions, edge, "all"), planes, 0.25 * edge)
     each = max(1, math.ceil(edge / spacing - 1e-6))
     steps = (np.arange(each) + 0.5) / each - 0.5
     points, areas = [drawn.points], [drawn.areas]
@@ -110,7 +132,7 @@ def points_of_particles(
             points.append(moved)
             areas.append(drawn.areas / each ** (dimension - 1))
     drawn = Surface(np.concatenate(points), np.concatenate(areas))
-    return _inside(drawn, spacing, depth, _by_axes)
+    return _inside(drawn, spacing, depth, _by_axes), lies_on
 
 
 def _inside(

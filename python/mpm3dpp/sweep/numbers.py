@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from mpm3dpp.base.errors import CaseError, guessed
+from mpm3dpp.case.box import CONTACT
 from mpm3dpp.case.case import Case
-from mpm3dpp.case.grid import CONTACT
 from mpm3dpp.io.history import ENERGIES
 from mpm3dpp.io.part_cells import PART_COLUMNS
 

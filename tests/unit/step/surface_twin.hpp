@@ -29,6 +29,7 @@ struct BlocksGiven {
   double E = 1e7, nu = 0.3, density = 1000.0;
   BodyKind kind = BodyKind::deformable;
   std::array<TimeFunction, 3> velocity{}, spin{};  // where they are prescribed
+  unsigned held_by = ~0u;                          // of the walls that hold what lies on them
 };
 
 template <int D>
@@ -153,6 +154,7 @@ class SurfaceTwin {
     }
     reference::Body<D>& body = deforms ? kept.back().body : step.bodies.back();
     body.kind = given.kind;
+    body.held_by = given.held_by;
     body.material = Elastic::of(given.E, given.nu, given.density);
     std::vector<double> x, v;
     for (const TurnedBlock<D>& block : given.blocks)
@@ -247,6 +249,7 @@ class SurfaceTwin {
             if (at_edge) add(0.0, area);
           });
         }
+    told.held_by = given.held_by;
     told.offsets = offsets;
     told.normals = normals;
     told.areas = areas;
@@ -280,7 +283,7 @@ class SurfaceTwin {
       reference::Body<D>& of = body.kept->body;
       for (auto& [i, node] : of.nodes) {
         for (int a = 0; a < D; ++a) node.v[a] += shaking * any();
-        step.hold(i, node.v);
+        reference::hold(step.walls_of(of), i, node.v);
       }
       step.reflect(of, &reference::Node<D>::v);
     }

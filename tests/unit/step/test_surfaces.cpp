@@ -293,6 +293,49 @@ void check_images(Report& report, Wall wall) {
   CHECK(across > 0.0);
 }
 
+/// The upper one does not lie on the wall, which pushes it back as it comes there: it has no image,
+/// its nodes are free, and it slides there, if at all, as the wall is.
+template <int D>
+void check_not_held(Report& report, Wall wall) {
+  SurfacesGiven<D> given = two_blocks<D>(basis_id<QuadraticBSpline>);
+  given.walls = {};
+  given.walls[0] = wall;
+  if (D == 3) given.walls[4] = Wall::slip;
+  given.gravity = 0.0;
+  given.friction = 0.3;
+  TurnedBlock<D>&lower = given.bodies[0].blocks[0], &upper = given.bodies[1].blocks[0];
+  upper.angle = 0.0;
+  lower.centre[1] = 6.03;
+  upper.centre[1] = lower.centre[1] + lower.size[1] + 0.01;
+  for (int a = 0; a < D; a += 2) {
+    lower.centre[a] = 0.5 * lower.size[a];
+    upper.centre[a] = 0.5 * upper.size[a];
+  }
+  upper.centre[0] += 0.04;
+  upper.velocity[0] = -6.0;
+  upper.velocity[1] = -9.0;
+  given.bodies[1].held_by = ~1u;
+  SurfaceTwin<D> twin(given);
+  SurfaceComparison<D> comparison(report, twin);
+  int at_wall = 0, rubs = 0, images = 0;
+  for (int k = 0; k < 24; ++k) {
+    comparison.make_step(step_of_waves);
+    for (const auto& touch : twin.surfaces.touches) {
+      if (touch.whom == -1) {
+        CHECK(touch.body == 1u, touch.body);
+        ++at_wall;
+        rubs += norm(touch.rub) > 0.0;
+      }
+      for (const auto& felt : touch.felt) {
+        if (touch.whom == 1) CHECK(felt.mirror.sign[0] > 0.0);
+        images += touch.whom == 0 && felt.mirror.sign[0] < 0.0 && felt.share > 1e-3;
+      }
+    }
+  }
+  CHECK(at_wall > 20 && images > 20, at_wall, images);
+  CHECK(wall == Wall::slip ? rubs == 0 : rubs > 20, rubs);
+}
+
 }  // namespace
 
 void test_surfaces(Report& report) {
@@ -311,6 +354,8 @@ void test_surfaces(Report& report) {
   check_bonds<2>(report);
   check_bonds<3>(report);
   for (const Wall wall : {Wall::slip, Wall::fixed}) {
+    check_not_held<2>(report, wall);
+    check_not_held<3>(report, wall);
     check_images<2>(report, wall);
     check_images<3>(report, wall);
   }

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mpm3dpp.case.grid import FACES
+from mpm3dpp.case.box import FACES
 
 from .deck import Array, Deck, Part
 from .particles import extent, half_cells

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where the nodes of bodies lie whose case leaves that to us, `frame = "auto"`, and why.
+
+Nodes in the body lose nothing of its motion, so they are taken wherever its material, what it
+touches and the rest of the case go with them (docs/decisions/0084-a-frame-by-the-matter.md).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from mpm3dpp.base.frames import ALONG, AUTO, MATERIAL, UPDATED
+
+from .body import Body
+from .frame import against_all, against_body, keys_at_nodes
+
+if TYPE_CHECKING:
+    from mpm3dpp.grains import Grains
+
+    from .case import Case
+
+
+def choose_frames(case: Case) -> dict[str, str]:
+    """Choose where the nodes of each body lie of which the case leaves it to us.
+
+    Args:
+        case: its entries that say "auto" are copied, as another case may have them too.
+
+    Returns:
+        Why the nodes of an entry, by its name, lie in space; "" where they lie in the body. Of
+        those alone that leave it to us and deform.
+    """
+    asked = {name: part for name, part in case.parts().items() if leaves_it(part)}
+    if not asked:
+        return {}
+    why = dict(_reasons(case, [name for name in asked if _deforms(case, name)]))
+    for name, part in asked.items():
+        table = case.body if name in case.body else case.grains
+        in_space = why.get(name, "it does not deform")
+        table[name] = _with_frame(part, UPDATED if in_space else MATERIAL)
+    return why
+
+
+def leaves_it(part: Body | Grains) -> bool:
+    """Return whether a case leaves it to us where the nodes of an entry lie."""
+    return part.frame == AUTO or (part._auto and "frame" not in part.model_fields_set)
+
+
+def _with_frame(part: Any, frame: str) -> Any:
+    """Return a copy of an entry with a frame that it can be chosen anew."""
+    part = part.model_copy()
+    part._auto = True
+    part.model_fields_set.discard("frame")
+    spaced = {"particles_per_cell", "spacing"} & part.model_fields_set
+    part.__dict__["frame"] = frame
+    volumes = getattr(getattr(part, "particles", None), "volumes", None)
+    if not spaced and volumes is None:
+        part.__dict__["particles_per_cell"] = ALONG if frame == UPDATED else None
+    return part
+
+
+def _deforms(case: Case, name: str) -> bool:
+    """Return whether an entry deforms, by a material that there is and that can be made."""
+    try:
+        return case.parts()[name].material in case.material and not case.is_rigid(name)
+    except ValueError:  # which is told where materials are checked
+        return False
+
+
+def _reasons(case: Case, names: list[str]) -> Iterator[tuple[str, str]]:
+    """Yield each entry with why its nodes lie in space, "" for nothing."""
+    of_all = _of_all(case)
+    own = {name: of_all or _of_its_own(case, name) for name in names}
+    others = [name for name in case.parts() if name not in own and _deforms(case, name)]
+    in_space = [name for name in others if case.parts()[name].frame == UPDATED]
+    touched = next((name for name, why in own.items() if why), next(iter(in_space), None))
+    for name, why in own.items():
+        if not why and touched is not None and case.contact_enabled:
+            yield name, f"it may touch {touched}, whose nodes lie in space"
+        else:
+            yield name, why
+
+
+def _of_all(case: Case) -> str:
+    """Return what of the case keeps all bodies on nodes in space."""
+    if case.preset is not None:
+        return f'preset = "{case.preset}" is of nodes in space'
+    for key in ("transfer", "scheme"):
+        if key in case.run.model_fields_set:
+            return f"run.{key} is given, which is of nodes in space"
+    at_nodes = keys_at_nodes(case) if case.contact.enabled else []
+    if at_nodes:
+        return f"contact.{at_nodes[0]} is given, which is of contact at nodes"
+    return _sentence(next(against_all(case), None))
+
+
+def _of_its_own(case: Case, name: str) -> str:
+    return _sentence(next(against_body(case, name), None))
+
+
+def _sentence(found: tuple[str, str] | None) -> str:
+    """Return rule and remedy of what has something against the frame as a reason."""
+    return f'frame = "{MATERIAL}" {found[0]}' if found else ""

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where the nodes of bodies lie whose case says `frame = "auto"`."""
+
+from __future__ import annotations
+
+import pytest
+
+from mpm3dpp import Case, CaseError
+from mpm3dpp.fill.build import build
+from mpm3dpp.run.summary import echo
+
+CASE = """
+{preset}
+[grid]
+dimension = 2
+cell_size = "1 mm"
+{grid}
+[run]
+end_time = "1 ms"
+{run}
+[contact]
+{contact}
+[material.soft]
+density = 1000
+strength = {{ elastic = {{ E = "1 MPa", nu = 0.3 }} }}
+{soft}
+[material.water]
+density = 1000
+strength = {{ fluid = {{}} }}
+eos = {{ tait = {{ c0 = 10 }} }}
+[material.sand]
+density = 1600
+strength = {{ mohr_coulomb = {{ E = "1 MPa", nu = 0.3, cohesion = 0, friction_angle = "33 deg" }} }}
+[material.steel]
+density = 7800
+strength = {{ rigid = {{}} }}
+[body.block]
+material = "soft"
+shape = {{ box = {{ lower = [0, 0], upper = ["8 mm", "8 mm"] }} }}
+frame = "auto"
+{block}
+{bodies}
+"""
+OTHER = """
+[body.{0}]
+material = "{0}"
+shape = {{ box = {{ lower = ["20 mm", 0], upper = ["28 mm", "8 mm"] }} }}
+frame = "{1}"
+"""
+KEYS = ("preset", "grid", "run", "contact", "soft", "block", "bodies")
+
+
+def case_of(**given: str) -> Case:
+    return Case.from_text(CASE.format(**{key: given.get(key, "") for key in KEYS}))
+
+
+def box(walls: str, lower: int = 0) -> str:
+    return f"box = {{ lower = [{lower}e-3, 0], upper = [0.04, 0.02], walls = {{ {walls} }} }}"
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {},
+        {"grid": 'basis = "gimp"'},
+        {"soft": "volume_averaging = true"},
+        {"soft": "failure = { principal_stress = { limit = 1e4 } }"},
+        {"contact": "friction = 0.3\nrestitution = 0.5"},
+        {"bodies": OTHER.format("steel", "updated")},
+        {"bodies": OTHER.format("water", "auto"), "contact": "enabled = false"},
+        {"grid": box('y_min = "contact", x_max = "contact"')},
+        {"grid": box('x_min = "slip", y_min = "fixed"')},
+        {"grid": box('x_min = "slip"', -4)},
+        {"grid": box('x_min = "slip"', 4), "block": "cut_at_box = true"},
+    ],
+)
+def test_in_the_body(given) -> None:
+    case = case_of(**given)
+    assert case.body["block"].frame == "material"
+    assert case.why_in_space["block"] == ""
+
+
+def test_the_step_follows_the_frame() -> None:
+    assert case_of().run.cfl == 0.4
+    assert case_of(bodies=OTHER.format("sand", "auto")).run.cfl == 0.5
+
+
+@pytest.mark.parametrize(
+    ("given", "why"),
+    [
+        ({"preset": 'preset = "paper"'}, 'preset = "paper" is of nodes in space'),
+        ({"grid": 'basis = "linear"'}, 'frame = "material" needs gradients without jumps'),
+        ({"grid": box('x_min = "absorbing"')}, "walls of grid.box that absorb"),
+        ({"run": 'transfer = "apic"'}, "run.transfer is given"),
+        ({"run": 'scheme = "musl"'}, "run.scheme is given"),
+        (
+            {"contact": 'detection = "velocity"', "bodies": OTHER.format("steel", "updated")},
+            "contact.detection is given",
+        ),
+        (
+            {"soft": 'failure = { principal_stress = { limit = 1e4, action = "erode" } }'},
+            'material.soft.failure whose action is "erode"',
+        ),
+        ({"bodies": OTHER.format("water", "auto")}, "it may touch water, whose nodes lie in space"),
+        ({"bodies": OTHER.format("sand", "auto")}, "it may touch sand, whose nodes lie in space"),
+        (
+            {"bodies": OTHER.format("soft", "updated")},
+            "it may touch soft, whose nodes lie in space",
+        ),
+    ],
+)
+def test_in_space(given, why) -> None:
+    case = case_of(**given)
+    assert case.body["block"].frame == "updated"
+    assert why in case.why_in_space["block"]
+
+
+def test_what_flows_says_by_which_model() -> None:
+    case = case_of(bodies=OTHER.format("sand", "auto"))
+    assert "material.sand, which flows by its strength mohr_coulomb" in (case.why_in_space["sand"])
+
+
+def test_no_frame_of_what_does_not_deform() -> None:
+    case = case_of(bodies=OTHER.format("steel", "auto"))
+    assert set(case.why_in_space) == {"block"}
+    assert case.body["steel"].frame == "updated"
+
+
+def test_what_is_said_is_kept() -> None:
+    case = case_of(bodies=OTHER.format("soft", "material"))
+    assert set(case.why_in_space) == {"block"}
+    with pytest.raises(CaseError, match="contact with block, which has another frame"):
+        case_of(run='transfer = "apic"', bodies=OTHER.format("soft", "material"))
+
+
+def test_grains_likewise() -> None:
+    grains = """
+[grains.balls]
+material = "soft"
+lattice = { lower = ["20 mm", 0], count = [2, 1], radius = "3 mm" }
+frame = "auto"
+"""
+    case = case_of(bodies=grains)
+    assert case.grains["balls"].frame == case.body["block"].frame == "material"
+    # Balls of few cells have three particles along each direction in this frame.
+    assert case.grains["balls"].particle_spacing(case.grid) == pytest.approx(1e-3 / 3.0)
+    case = case_of(bodies=grains, grid=box('x_max = "absorbing"'))
+    assert case.grains["balls"].frame == "updated"
+    assert case.grains["balls"].particle_spacing(case.grid) == pytest.approx(1e-3 / 2.0)
+
+
+def test_the_choice_is_as_if_it_had_been_said() -> None:
+    for chosen, given in (("material", {}), ("updated", {"grid": 'basis = "linear"'})):
+        auto = case_of(**given)
+        said = auto.with_({"body.block.frame": chosen})
+        assert said.case_hash == auto.case_hash
+        assert said.content() == auto.content()
+
+
+def test_it_is_chosen_anew_where_the_case_changes() -> None:
+    case = case_of()
+    case.grid.basis = "linear"
+    case.complete_and_check()
+    assert case.body["block"].frame == "updated"
+    assert case.body["block"].particles_per_cell == 2
+    case.grid.basis = "quadratic_bspline"
+    case.complete_and_check()
+    assert case.body["block"].frame == "material"
+    case.body["block"].frame = "updated"
+    case.complete_and_check()
+    assert case.body["block"].frame == "updated"
+    assert case.why_in_space == {}
+
+
+def test_a_body_that_serves_two_cases_is_chosen_for_each() -> None:
+    first = case_of()
+    second = case_of(grid='basis = "linear"')
+    shared = second.body["block"].model_copy(update={"frame": "auto"})
+    made = [
+        Case(grid=of.grid, run=of.run, material=of.material, body={"block": shared})
+        for of in (first, second)
+    ]
+    assert [one.body["block"].frame for one in made] == ["material", "updated"]
+    assert shared.frame == "auto"
+
+
+def test_the_echo_says_which_and_why() -> None:
+    case = case_of(bodies=OTHER.format("sand", "auto"))
+    lines = [line for line in echo(case, build(case)).splitlines() if line.startswith("frame: ")]
+    assert lines[0].startswith('frame: "updated" for block, as it may touch sand')
+    assert lines[1].startswith('frame: "updated" for sand, as frame = "material" does not go with')
+    alone = case_of()
+    said = alone.with_({"body.block.frame": "updated"})
+    told = 'frame: "material" for block: nodes lie in each body and keep its motion'
+    assert told in echo(alone, build(alone)).splitlines()
+    assert "frame: " not in echo(said, build(said))
