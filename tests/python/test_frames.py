@@ -12,6 +12,8 @@ import pytest
 
 from commands import mpm3dpp
 from mpm3dpp import Case, CaseError, Simulation
+from mpm3dpp.fill.advisories import notes
+from mpm3dpp.fill.build import build
 
 CASE = """
 [grid]
@@ -103,6 +105,40 @@ def test_walls_that_hold_them_and_contact() -> None:
     Case.from_text(text.replace("enabled = false", ""))
     with pytest.raises(CaseError, match="slip or fixed and a restitution, yet"):
         Case.from_text(text.replace("enabled = false", "restitution = 0.5"))
+
+
+BLOCK = {"box": {"lower": [0.01, 0.0], "upper": [0.018, 0.008]}}
+
+
+@pytest.mark.parametrize(
+    ("shape", "velocity", "told"),
+    [
+        (BLOCK, (0.0, -3.0), True),
+        (BLOCK, (0.0, 3.0), True),
+        (BLOCK, (3.0, 0.0), False),
+        ({"disc": {"centre": [0.01, 0.004], "radius": 0.004}}, (0.0, -3.0), False),
+    ],
+)
+def test_what_lies_on_a_plane_of_symmetry_and_moves_across_it_is_told_of(
+    shape: dict[str, Any], velocity: tuple[float, float], told: bool
+) -> None:
+    """Its nodes there are at rest from the start; a ball that touches it in a point is free."""
+    box = {"lower": [0.0, 0.0], "upper": [0.04, 0.04], "walls": {"y_min": "slip"}}
+    material = {"density": 1000.0, "strength": {"elastic": {"E": 1e6, "nu": 0.3}}}
+    case = Case.model_validate(
+        {
+            "grid": {"dimension": 2, "cell_size": 1e-3, "box": box},
+            "run": {"end_time": 1e-3},
+            "material": {"m": material},
+            "body": {"b": {"material": "m", "frame": "material", "shape": shape}},
+        }
+    )
+    case.body["b"].velocity = velocity
+    found = [
+        one for one in notes(case, build(case)) if "body.b lies on grid.box.walls.y_min" in one
+    ]
+    assert len(found) == told
+    assert all("begins with 3 m/s across it" in one for one in found)
 
 
 def test_short_waves_are_damped_of_them_alone() -> None:

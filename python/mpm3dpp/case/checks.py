@@ -77,7 +77,7 @@ def _bodies_together(case: Case) -> Found:
     if all(case.is_rigid(name) for name in case.parts()):
         rule = "holds rigid bodies only, so no wave limits the time step: one must deform"
         path: Path = ("body",) if case.body else ("grains",)
-        yield violation(rule, "give one another strength", path=path)
+        yield violation(rule, "give one another strength, and no motion", path=path)
     yield from check_detonations(case)
     yield from check_loads(case)
     yield from check_stops(case)

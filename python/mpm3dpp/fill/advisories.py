@@ -37,7 +37,7 @@ from .surface_notes import surface_notes
 from .surface_points import MOST_CFL, surfaces_touch
 from .transfer_notes import transfer_notes
 from .unit_notes import unit_notes
-from .wall_notes import wall_notes
+from .wall_notes import crossed_walls, wall_notes
 
 _INCOMPRESSIBLE = 0.45
 _STIFFEST = 0.499
@@ -61,6 +61,7 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *bond_notes(case),
         *detonation_notes(case, bodies, world),
         *wall_notes(case),
+        *crossed_walls(case, bodies),
         *surface_notes(case, bodies),
         *transfer_notes(case),
         *friction_notes(case),

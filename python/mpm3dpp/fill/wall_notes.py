@@ -3,10 +3,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from mpm3dpp.base.errors import key_text
 from mpm3dpp.base.time_functions import TimeFunction
-from mpm3dpp.case.box import CONTACT, FACES
+from mpm3dpp.case.box import CONTACT, FACES, HOLDING
 from mpm3dpp.case.case import Case
+from mpm3dpp.case.frame import in_body
+from mpm3dpp.shapes.contact_points import lies_on
+
+from .parts import Filled
+
+_ON_WALL = 0.25  # Spacings from a wall within which a body lies on it.
 
 
 def wall_notes(case: Case) -> list[str]:
@@ -45,3 +53,46 @@ def wall_notes(case: Case) -> list[str]:
             "is of bodies; give grid.box.friction = 0.3, or 0 if that is meant"
         )
     return found
+
+
+def crossed_walls(case: Case, bodies: Filled) -> list[str]:
+    """Return a sentence for each body that a wall holds and that begins with a speed across it.
+
+    Args:
+        case: a checked case.
+        bodies: its bodies, filled.
+    """
+    return [
+        f"{key_text(case.part_path(name))} lies on grid.box.walls.{FACES[face]}, which is "
+        f"{case.grid.walls[face]} and holds it there, and begins with {abs(speed):.3g} m/s across "
+        "it: what lies there begins at rest, so that its momentum and energy are off by a share of "
+        f'a cell; make the wall "{CONTACT}" if it is to be hit'
+        for name, face, speed in _crossings(case, bodies)
+    ]
+
+
+def _crossings(case: Case, bodies: Filled) -> Iterator[tuple[str, int, float]]:
+    """Yield bodies on nodes of their own, the walls that hold them, and their speeds across."""
+    box = case.grid.box
+    if box is None:
+        return
+    for name in in_body(case):
+        body = case.body.get(name)  # No wall holds grains.
+        if body is None or not body.velocity:
+            continue
+        part = bodies.parts[name]
+        for face, wall in enumerate(case.grid.walls):
+            axis, at_end = divmod(face, 2)
+            if wall not in HOLDING:
+                continue
+            speed, plane = body.velocity[axis], (box.lower, box.upper)[at_end][axis]
+            if not isinstance(speed, int | float) or speed == 0.0:
+                continue
+            if body.shape is not None:
+                on = lies_on(body.shape, part.spacing, (axis, plane))
+            else:
+                seen = (part.survey.lower, part.survey.upper)[at_end][0, axis]
+                off = abs(float(seen) - plane) - 0.5 * part.spacing
+                on = abs(off) < _ON_WALL * part.spacing
+            if on:
+                yield name, face, float(speed)

@@ -105,4 +105,7 @@ def choose(
         for word in component_words(array.shape[1])
     ]
     known = [*(name for name in arrays if name != "position"), "speed", *parts]
-    raise CaseError(f"'{colour}' is not an array of these results", nearest(colour, known))
+    remedy = (
+        f"{nearest(colour, known)}; others are written where output.fields of the case names them"
+    )
+    raise CaseError(f"'{colour}' is not an array of these results", remedy)

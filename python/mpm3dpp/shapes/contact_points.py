@@ -61,8 +61,13 @@ def points_of_shape(
         depth: how far they lie behind the surface [m].
         planes: those on which a face is no surface: a body goes on there.
     """
-    drawn, lies_on = _off_planes(surface(shape, "all", spacing), planes, 1e-3 * spacing)
-    return _inside(drawn, spacing, depth, _beside_each_other), lies_on
+    drawn, on = _off_planes(surface(shape, "all", spacing), planes, 1e-3 * spacing)
+    return _inside(drawn, spacing, depth, _beside_each_other), on
+
+
+def lies_on(shape: Shape, spacing: float, plane: Plane) -> bool:
+    """Return whether a face of a shape lies on a plane, by points of about that distance [m]."""
+    return bool(_off_planes(surface(shape, "all", spacing), [plane], 1e-3 * spacing)[1])
 
 
 def _off_planes(
@@ -75,16 +80,16 @@ def _off_planes(
         planes: those on which a face is no surface.
         within: how near to a plane a face lies on it [m].
     """
-    lies_on = []
+    found = []
     for axis, place in planes:
         along = abs(drawn.areas[:, axis]) > _ONE_FACE * np.linalg.norm(drawn.areas, axis=1)
-        on = along & (abs(drawn.points[:, axis] - place) < within)
+        there = along & (abs(drawn.points[:, axis] - place) < within)
         # A ball touches a plane by a point.
-        if on.sum() < drawn.points.shape[1]:
+        if there.sum() < drawn.points.shape[1]:
             continue
-        lies_on.append((axis, place))
-        drawn = Surface(drawn.points[~on], drawn.areas[~on])
-    return drawn, lies_on
+        found.append((axis, place))
+        drawn = Surface(drawn.points[~there], drawn.areas[~there])
+    return drawn, found
 
 
 def points_of_ball(centre: Array, radius: float, spacing: float, depth: float) -> ContactPoints:
@@ -112,7 +117,7 @@ def points_of_particles(
         depth: how far they lie behind the surface [m].
         planes: as of a shape; faces of particles lie on one to a quarter of their edge.
     """
-    drawn, lies_on = _off_planes(faces(positions, edge, "all"), planes, 0.25 * edge)
+    drawn, on = _off_planes(faces(positions, edge, "all"), planes, 0.25 * edge)
     each = max(1, math.ceil(edge / spacing - 1e-6))
     steps = (np.arange(each) + 0.5) / each - 0.5
     points, areas = [drawn.points], [drawn.areas]
@@ -132,7 +137,7 @@ def points_of_particles(
             points.append(moved)
             areas.append(drawn.areas / each ** (dimension - 1))
     drawn = Surface(np.concatenate(points), np.concatenate(areas))
-    return _inside(drawn, spacing, depth, _by_axes), lies_on
+    return _inside(drawn, spacing, depth, _by_axes), on
 
 
 def _inside(
