@@ -155,7 +155,7 @@ def test_a_block_that_is_crushed_makes_no_energy(limit: float) -> None:
     assert 'particles of body "block" have failed' in told
 
 
-@pytest.mark.parametrize("cfl", [0.4, 0.1])
+@pytest.mark.parametrize("cfl", [0.4, pytest.param(0.1, marks=pytest.mark.slow)])
 def test_debris_on_a_wall_makes_no_energy(cfl: float) -> None:
     """Particles that have failed are stretched between pieces that fly apart, which is not their
     surface: with it one step made 4 % or 26 % as a point leapt into the wall."""
