@@ -78,8 +78,13 @@ class _Body(_Form):
     final: Annotated[dict[str, Number], _holds(_BodyEnd)]
 
 
+class _CaseBox(_Form):
+    walls: dict[str, Any] = {}
+
+
 class _CaseGrid(_Form):
     dimension: Literal[2, 3] = 3
+    box: _CaseBox = _CaseBox()
 
 
 class _CaseRun(_Form):
