@@ -25,6 +25,7 @@ LAYERS = {
     "sweep": 8,
     "reports": 8,
     "reproduce": 9,
+    "validate": 8,
     "cli": 10,
 }
 FOR_ALL = {"_core"}  # the compiled core

@@ -27,6 +27,7 @@ from .report import report
 from .reproduce import reproduce
 from .study import study
 from .sweep import sweep
+from .validate import validate
 
 app = typer.Typer(
     name="mpm3dpp",
@@ -178,5 +179,6 @@ app.command()(materials)
 app.command("material-test")(material_test)
 app.command()(bench)
 app.command()(reproduce)
+app.command()(validate)
 app.command()(docs)
 app.add_typer(examples, name="examples")

@@ -46,6 +46,7 @@ _STARTS_OTHERS = {
     "reproduce": "",
     "study": "; for runs beside each other give it --jobs",
     "sweep": "; for runs beside each other give it --jobs",
+    "validate": "",
 }
 """Commands that start processes of their own, which would take themselves for ranks; what to do."""
 
