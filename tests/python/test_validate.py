@@ -124,6 +124,9 @@ def test_the_command(tmp_path: Path) -> None:
     assert "## A disc that spins comes down on a floor" in (tmp_path / "page.md").read_text()
     listed = mpm3dpp("validate", "--list", cwd=tmp_path)
     assert [line.split()[0] for line in listed.stdout.splitlines()] == names()
+    lost = mpm3dpp("validate", "taylor_bar", "--out", "none/page.md", cwd=tmp_path)
+    assert lost.returncode == 2
+    assert "is no folder; make it, or choose another --out" in lost.stderr
     wrong = mpm3dpp("validate", "spun_disk", cwd=tmp_path)
     assert wrong.returncode == 2
     assert 'is no benchmark; did you mean "spun_disc"?' in wrong.stderr

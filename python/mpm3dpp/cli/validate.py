@@ -28,6 +28,7 @@ def validate(
     Ends with 1 if a figure is missed of which that is not known.
     """
     from mpm3dpp.base.disk import write_atomically
+    from mpm3dpp.base.errors import CaseError
     from mpm3dpp.validate.benchmark import benchmarks
     from mpm3dpp.validate.judge import MISSED, judge
     from mpm3dpp.validate.tell import last_line, lines_of, page_of
@@ -38,6 +39,9 @@ def validate(
         for one in chosen:
             typer.echo(f"{one.name.ljust(width)}  {one.problem.title}")
         return
+    if out is not None and not out.resolve().parent.is_dir():
+        rule, remedy = f"'{out.resolve().parent}' is no folder", "make it, or choose another --out"
+        raise CaseError(rule, remedy)
     done = []
     for one in chosen:
         typer.echo(f"{one.name}: {one.problem.title}", err=True)
