@@ -255,10 +255,9 @@ void check_bonds(Report& report) {
   CHECK(most > 0.01 * twin.e && pushes, most, pushes);
 }
 
-/// Two blocks that stand on one plane of symmetry or fixed wall, in 3D on two, hit each other:
-/// their points feel mirrored ones, in the edge between the walls those of three images.
+/// Two blocks that stand on one plane of symmetry or fixed wall, in 3D on two, and hit each other.
 template <int D>
-void check_images(Report& report, Wall wall) {
+SurfacesGiven<D> blocks_on_wall(Wall wall) {
   SurfacesGiven<D> given = two_blocks<D>(basis_id<QuadraticBSpline>);
   given.walls = {};
   given.walls[0] = wall;
@@ -275,7 +274,13 @@ void check_images(Report& report, Wall wall) {
   }
   upper.velocity[0] = 0.0;
   upper.velocity[1] = -9.0;
-  SurfaceTwin<D> twin(given);
+  return given;
+}
+
+/// Their points feel mirrored ones, in the edge between the walls those of three images.
+template <int D>
+void check_images(Report& report, Wall wall) {
+  SurfaceTwin<D> twin(blocks_on_wall<D>(wall));
   SurfaceComparison<D> comparison(report, twin);
   std::array<int, D> images{};
   double across = 0.0;
@@ -297,23 +302,10 @@ void check_images(Report& report, Wall wall) {
 /// its nodes are free, and it slides there, if at all, as the wall is.
 template <int D>
 void check_not_held(Report& report, Wall wall) {
-  SurfacesGiven<D> given = two_blocks<D>(basis_id<QuadraticBSpline>);
-  given.walls = {};
-  given.walls[0] = wall;
-  if (D == 3) given.walls[4] = Wall::slip;
-  given.gravity = 0.0;
-  given.friction = 0.3;
-  TurnedBlock<D>&lower = given.bodies[0].blocks[0], &upper = given.bodies[1].blocks[0];
-  upper.angle = 0.0;
-  lower.centre[1] = 6.03;
-  upper.centre[1] = lower.centre[1] + lower.size[1] + 0.01;
-  for (int a = 0; a < D; a += 2) {
-    lower.centre[a] = 0.5 * lower.size[a];
-    upper.centre[a] = 0.5 * upper.size[a];
-  }
+  SurfacesGiven<D> given = blocks_on_wall<D>(wall);
+  TurnedBlock<D>& upper = given.bodies[1].blocks[0];
   upper.centre[0] += 0.04;
   upper.velocity[0] = -6.0;
-  upper.velocity[1] = -9.0;
   given.bodies[1].held_by = ~1u;
   SurfaceTwin<D> twin(given);
   SurfaceComparison<D> comparison(report, twin);
