@@ -317,7 +317,12 @@ def test_another_world_is_the_same(dimension: int, of_soft: str) -> None:
 
 @pytest.mark.parametrize(
     ("dimension", "of_soft"),
-    [(2, ""), (2, AVERAGES), (3, ""), pytest.param(3, AVERAGES, marks=pytest.mark.slow)],
+    [
+        (2, ""),
+        (2, AVERAGES),
+        pytest.param(3, "", marks=pytest.mark.slow),
+        pytest.param(3, AVERAGES, marks=pytest.mark.slow),
+    ],
 )
 def test_the_same_bits(dimension: int, of_soft: str, tmp_path: Path) -> None:
     """With any number of threads and ranks, and after a restart amid it."""
