@@ -186,7 +186,7 @@ def test_debris_on_a_wall_makes_no_energy(cfl: float) -> None:
     assert total.max() < 1.001 * total[0]
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_the_same_bits(dimension: int, tmp_path: Path) -> None:
     """With any number of threads and ranks, and after a restart amid it."""
     case = punched_block(dimension)

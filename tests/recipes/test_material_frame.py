@@ -236,8 +236,10 @@ def test_another_world_is_the_same(dimension: int, averages: bool) -> None:
     check_worlds(several(dimension, averages), 300 if dimension == 2 else 60, "", meet=False)
 
 
-@pytest.mark.parametrize("averages", [False, True])
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize(
+    ("dimension", "averages"),
+    [(2, False), (2, True), (3, False), pytest.param(3, True, marks=pytest.mark.slow)],
+)
 def test_the_same_bits(dimension: int, averages: bool, tmp_path: Any) -> None:
     """With any number of threads, stages fused or not, and after a restart."""
     check_same_bits(several(dimension, averages), tmp_path)

@@ -344,7 +344,7 @@ def test_without_mpi4py(tmp_path: Path) -> None:
         assert "pip install 'mpm3dpp[mpi]'" in one_sentence(done.stderr)
 
 
-@pytest.mark.parametrize("name", ["elastic2d", "drum"])
+@pytest.mark.parametrize("name", ["elastic2d", pytest.param("drum", marks=pytest.mark.slow)])
 def test_bench_of_ranks(tmp_path: Path, way: str, name: str) -> None:
     words = ("bench", name, "--size", 16, "--steps", 5, "--ranks", 1, "--ranks", 2)
     line = command(*words, "--json", "--plot", tmp_path / "bench.png")
