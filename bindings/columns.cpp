@@ -55,7 +55,7 @@ Floats rows_of_slice(AnySimulation& either, const std::vector<int>& writers, std
 
 void def_columns(SimulationClass& simulation) {
   simulation
-      .def("columns", of_any([](auto& s, int body) { return columns(s.domain, body); }),
+      .def("columns", of_any_as_is([](auto& s, int body) { return columns(s.domain, body); }),
            nb::arg("body"))
       .def(
           "column",
