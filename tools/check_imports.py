@@ -24,8 +24,8 @@ LAYERS = {
     "bench": 8,
     "sweep": 8,
     "reports": 8,
-    "reproduce": 9,
     "validate": 8,
+    "reproduce": 9,
     "cli": 10,
 }
 FOR_ALL = {"_core"}  # the compiled core

@@ -7,7 +7,6 @@ touches and the rest of the case go with them (docs/decisions/0084-a-frame-by-th
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from mpm3dpp.base.frames import ALONG, AUTO, MATERIAL, UPDATED
@@ -34,7 +33,7 @@ def choose_frames(case: Case) -> dict[str, str]:
     asked = {name: part for name, part in case.parts().items() if leaves_it(part)}
     if not asked:
         return {}
-    why = dict(_reasons(case, [name for name in asked if _deforms(case, name)]))
+    why = _reasons(case, [name for name in asked if _deforms(case, name)])
     for name, part in asked.items():
         table = case.body if name in case.body else case.grains
         in_space = why.get(name, "it does not deform")
@@ -48,7 +47,7 @@ def leaves_it(part: Body | Grains) -> bool:
 
 
 def _with_frame(part: Any, frame: str) -> Any:
-    """Return a copy of an entry with a frame that it can be chosen anew."""
+    """Return a copy of an entry in a frame that can be chosen anew."""
     part = part.model_copy()
     part._auto = True
     part.model_fields_set.discard("frame")
@@ -68,18 +67,17 @@ def _deforms(case: Case, name: str) -> bool:
         return False
 
 
-def _reasons(case: Case, names: list[str]) -> Iterator[tuple[str, str]]:
-    """Yield each entry with why its nodes lie in space, "" for nothing."""
+def _reasons(case: Case, names: list[str]) -> dict[str, str]:
+    """Return why the nodes of each entry lie in space, "" for nothing."""
     of_all = _of_all(case)
-    own = {name: of_all or _of_its_own(case, name) for name in names}
-    others = [name for name in case.parts() if name not in own and _deforms(case, name)]
-    in_space = [name for name in others if case.parts()[name].frame == UPDATED]
-    touched = next((name for name, why in own.items() if why), next(iter(in_space), None))
-    for name, why in own.items():
-        if not why and touched is not None and case.contact_enabled:
-            yield name, f"it may touch {touched}, whose nodes lie in space"
-        else:
-            yield name, why
+    why = {name: of_all or _sentence(next(against_body(case, name), None)) for name in names}
+    others = [name for name in case.parts() if name not in why and _deforms(case, name)]
+    in_space = [name for name, reason in why.items() if reason]
+    in_space += [name for name in others if case.parts()[name].frame == UPDATED]
+    if not in_space or not case.contact_enabled:
+        return why
+    touches = f"it may touch {in_space[0]}, whose nodes lie in space"
+    return {name: reason or touches for name, reason in why.items()}
 
 
 def _of_all(case: Case) -> str:
@@ -93,10 +91,6 @@ def _of_all(case: Case) -> str:
     if at_nodes:
         return f"contact.{at_nodes[0]} is given, which is of contact at nodes"
     return _sentence(next(against_all(case), None))
-
-
-def _of_its_own(case: Case, name: str) -> str:
-    return _sentence(next(against_body(case, name), None))
 
 
 def _sentence(found: tuple[str, str] | None) -> str:

@@ -10,11 +10,9 @@ from mpm3dpp.base.time_functions import TimeFunction
 from mpm3dpp.case.box import CONTACT, FACES, HOLDING
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.frame import in_body
-from mpm3dpp.shapes.contact_points import lies_on
+from mpm3dpp.shapes.contact_points import ON_PLANE, lies_on
 
 from .parts import Filled
-
-_ON_WALL = 0.25  # Spacings from a wall within which a body lies on it.
 
 
 def wall_notes(case: Case) -> list[str]:
@@ -93,6 +91,6 @@ def _crossings(case: Case, bodies: Filled) -> Iterator[tuple[str, int, float]]:
             else:
                 seen = (part.survey.lower, part.survey.upper)[at_end][0, axis]
                 off = abs(float(seen) - plane) - 0.5 * part.spacing
-                on = abs(off) < _ON_WALL * part.spacing
+                on = abs(off) < ON_PLANE * part.spacing
             if on:
                 yield name, face, float(speed)

@@ -25,6 +25,8 @@ Plane = tuple[int, float]
 FacesOf = Callable[[Array, Array, float], NDArray[np.int64]]
 """Of the places of points [m], their normals and their distance [m]."""
 
+ON_PLANE = 0.25
+"""Edges of particles from a plane within which their faces lie on it."""
 _SAME_POINT = 0.4  # Spacings: two points of different faces that are nearer are one.
 _BESIDE = 1.6  # Spacings: points of one face that are nearer lie beside each other.
 _ONE_FACE = 0.9  # Cosine of the angle up to which two normals are those of one face.
@@ -117,7 +119,7 @@ def points_of_particles(
         depth: how far they lie behind the surface [m].
         planes: as of a shape; faces of particles lie on one to a quarter of their edge.
     """
-    drawn, on = _off_planes(faces(positions, edge, "all"), planes, 0.25 * edge)
+    drawn, on = _off_planes(faces(positions, edge, "all"), planes, ON_PLANE * edge)
     each = max(1, math.ceil(edge / spacing - 1e-6))
     steps = (np.arange(each) + 0.5) / each - 0.5
     points, areas = [drawn.points], [drawn.areas]

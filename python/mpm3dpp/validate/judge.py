@@ -50,13 +50,12 @@ class Judged:
         return OK if self.within else MISSED
 
 
-def judge(benchmark: Benchmark, threads: int | None = None, quiet: bool = True) -> list[Judged]:
+def judge(benchmark: Benchmark, threads: int | None = None) -> list[Judged]:
     """Run a benchmark, and return its figures.
 
     Args:
         benchmark: which.
         threads: of each run.
-        quiet: no progress.
 
     Raises:
         CaseError: what is taken is no column of the run.
@@ -66,7 +65,7 @@ def judge(benchmark: Benchmark, threads: int | None = None, quiet: bool = True) 
     for variant in benchmark.variants:
         with tempfile.TemporaryDirectory() as folder:
             case = benchmark.case(variant)
-            run_case(case, Path(folder) / "out", threads=threads, quiet=quiet, pictures=False)
+            run_case(case, Path(folder) / "out", threads=threads, pictures=False)
             takes = benchmark.problem.take
             tables = {
                 take.probe: _table(Path(folder) / "out", take.probe) for take in takes.values()
