@@ -73,7 +73,7 @@ void find_walls_of_bodies(Domain<D>& domain) {
   TileGrid<D>& grid = domain.grid;
   if (!grid.walls.exist) return;
   const auto is_held = [&](const Body<D>& body) {
-    return !body.keeps_nodes() || grid.walls.hold(body.held_by);
+    return !body.keeps_nodes() || grid.walls.all_hold(body.held_by);
   };
   if (std::ranges::all_of(domain.bodies, is_held)) return;
   for (const Body<D>& body : domain.bodies)

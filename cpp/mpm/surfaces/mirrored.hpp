@@ -45,14 +45,15 @@ template <int D, class F>
 void for_each_image(const TileGrid<D>& grid, int body, const Vec<double, D>& place, double reach,
                     F&& f) {
   f(PlaceOrImage<D>{0, place});
-  if (!grid.walls.exist) return;
+  const Walls<D>& walls = grid.walls_of(body);
+  if (!walls.exist) return;
   std::array<PlaceOrImage<D>, D == 3 ? 27 : 9> found;  // beyond one wall at most along each axis
   found[0].place = place;
   std::size_t count = 1;
   for (int a = 0; a < D; ++a) {
     const std::size_t before = count;
     for (const int side : {0, 1}) {
-      if (!Walls<D>::holds(grid.walls_of(body).face[a][side])) continue;
+      if (!Walls<D>::holds(walls.face[a][side])) continue;
       const auto mirror = static_cast<std::uint8_t>(1u << (side * D + a));
       const Vec<double, D> image = mirrored_place(grid, mirror, place);
       if (!(0.5 * std::abs(image[a] - place[a]) < reach)) continue;

@@ -14,8 +14,7 @@ namespace mpm {
 namespace {
 
 /// The faces of the box that push a point of a body back which overlaps them by more than that,
-/// o = e / 2 - z:
-/// f(opposite, o, normal).
+/// o = e / 2 - z: f(opposite, o, normal).
 template <int D, class F>
 void for_each_wall(const Domain<D>& domain, int body, const Vec<double, D>& place, double least,
                    F&& f) {
@@ -44,13 +43,12 @@ SurfaceTouch<D> touch_of_face(const Domain<D>& domain, int body, std::uint32_t p
   SurfaceTouch<D> touch;
   touch.point = point;
   touch.opposite = face;
-  touch.arm = Vec<double, D>::zero();
   touch.overlap = overlap - set_back;
   touch.stiffness = stiffness_at_wall(surfaces.points[point].area, domain.grid.cell_size,
                                       1.0 / domain.body_at(body).stiffness);
   touch.slope = normal;
-  if (surfaces.points[point].face != no_face)
-    touch.arm = (overlap - 0.5 * surfaces.spacing) * normal;  // -z n
+  const bool debris = surfaces.points[point].face == no_face;
+  touch.arm = (debris ? 0.0 : overlap - 0.5 * surfaces.spacing) * normal;  // -z n
   return touch;
 }
 

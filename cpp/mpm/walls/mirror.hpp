@@ -16,10 +16,11 @@ void for_each_ghost_node(const TileGrid<D>& grid, const Patch<D>& patch, F&& f) 
   // The linear basis reaches no node beyond a wall that its particles are not beyond.
   if (!patch.at_wall || !grid.has_ghosts()) return;
   const Index<D> first = grid.first_cell(patch.tile);
+  const Walls<D>& walls = grid.walls_of(patch.body);
   for (int n = 0; n < shape.node_count; ++n) {
     Index<D> node = shape.index(n);
     for (int a = 0; a < D; ++a) node[a] += first[a];
-    const auto image = grid.walls_of(patch.body).image(node);
+    const auto image = walls.image(node);
     if (!image) continue;
     Index<D> in_block = image->node;
     for (int a = 0; a < D; ++a) in_block[a] -= first[a];

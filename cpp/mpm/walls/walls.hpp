@@ -45,7 +45,7 @@ struct Walls {
   /// Does a face hold what lies on it: as a plane of symmetry, or fixed?
   MPM_HD static bool holds(Wall wall) { return wall == Wall::slip || wall == Wall::fixed; }
   /// Do all such faces hold a body, by the bits 2 axis + side of those that do?
-  bool hold(unsigned faces) const {
+  bool all_hold(unsigned faces) const {
     bool all = true;
     for (int a = 0; a < D; ++a)
       for (int side = 0; side < 2; ++side)
