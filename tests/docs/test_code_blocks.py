@@ -45,7 +45,7 @@ PREPARED: dict[str, tuple[tuple[str, ...] | str, str]] = {
     "docs/how-to/begin-under-weight.md": (('"0.2 s"', '"20 ms"'), "layer"),
     "docs/how-to/bring-mpm3d-files.md": ("", ""),
     "docs/how-to/draw-pictures.md": (TWO_BLOCKS, "out"),
-    "docs/how-to/many-grains.md": (('"2 ms"', '"0.1 ms"'), "out"),
+    "docs/how-to/many-grains.md": (('"4 ms"', '"1 ms"'), "out"),
     "docs/how-to/open-results-in-paraview.md": (TWO_BLOCKS, "results/01_two_rings"),
     "docs/how-to/run-a-case.md": (('"2 ms"', '"20 us"'), ""),
     "docs/how-to/run-on-several-ranks.md": (TWO_BLOCKS, ""),

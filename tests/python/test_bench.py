@@ -21,6 +21,7 @@ KEYS = {
 }
 
 
+IN_SPACE = Numerics(frame="updated")
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 
 
@@ -37,7 +38,9 @@ def script(monkeypatch):
 def cubes():
     """Two cubes with contact, of 4 cells along the edge, and how the progress was told."""
     told = []
-    result = bench.measure("two_cubes", size=4, steps=7, told=lambda *part: told.append(part))
+    result = bench.measure(
+        "two_cubes", 4, numerics=IN_SPACE, steps=7, told=lambda *part: told.append(part)
+    )
     return result, told
 
 
@@ -66,7 +69,7 @@ def test_grains_are_balls_of_552_particles_that_touch():
     assert cases.BENCHES["spheres"].particles(1000) == 552_000
     assert np.ptp(spheres.centres(1000), axis=0) == pytest.approx([9 * 5 * cases.CELL] * 3)
     assert len(np.unique(spheres.centres(100), axis=0)) == 100
-    simulation = cases.make(cases.BENCHES["spheres"], size=8)
+    simulation = cases.make(cases.BENCHES["spheres"], size=8, numerics=IN_SPACE)
     assert simulation.particle_count == 8 * spheres.PARTICLES
     simulation.advance(20, 1.0)
     pairs = {pair.bodies for pair in simulation.contact_pairs()}
@@ -170,7 +173,7 @@ def test_blocks_hold_all_steps():
 @pytest.mark.parametrize(
     "numerics",
     [
-        Numerics(),
+        IN_SPACE,
         Numerics(preset="paper"),
         Numerics(scheme="usl"),
         Numerics(basis="gimp"),
@@ -205,7 +208,7 @@ def test_every_benchmark_strains_and_crosses_cells(name, numerics):
 
 def test_discs_in_a_drum_touch_and_turn_with_it():
     chosen = cases.BENCHES["drum"]
-    simulation = cases.make(chosen, size=30)
+    simulation = cases.make(chosen, size=30, numerics=IN_SPACE)
     discs = simulation.particle_count - simulation.body_particle_count(0)
     assert discs == pytest.approx(chosen.particles(30), rel=0.02)
     before = simulation.column(3, "position")

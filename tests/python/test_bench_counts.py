@@ -21,7 +21,7 @@ def test_what_is_not_counted_is_said(capsys):
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_columns_of_the_traffic_are_those_of_the_core(dimension):
     name = "elastic3d" if dimension == 3 else "elastic2d"
-    simulation = cases.make(cases.BENCHES[name], size=2)
+    simulation = cases.make(cases.BENCHES[name], size=2, numerics=Numerics(frame="updated"))
     components = {column.name: column.components for column in simulation.columns(0)}
     used = {c for parts in traffic.STAGES.values() for part in parts for c in part}
     assert components.pop("affine_velocity") == traffic.numbers("affine part", dimension)

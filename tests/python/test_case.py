@@ -75,7 +75,7 @@ def test_si_values_and_defaults() -> None:
     assert case.grid.origin == case.grid.lower == (0.0, 0.0)
     assert case.grid.box_cells == (100, 50)
     assert case.grid.walls == ("slip", "free", "free", "free", "free", "free")
-    assert (case.run.scheme, case.run.cfl, case.run.end_time) == ("usf", 0.5, 0.0035)
+    assert (case.run.scheme, case.run.cfl, case.run.end_time) == ("usf", 0.4, 0.0035)
     assert case.run.gravity == (0.0, 0.0)
     assert case.run.viscosity is not None
     assert (case.run.viscosity.quadratic, case.run.viscosity.linear) == (1.5, 0.06)
@@ -87,7 +87,7 @@ def test_si_values_and_defaults() -> None:
     assert (left.velocity, left.angular_velocity, left.particles_per_cell) == (
         (30.0, 0.0),
         (0.0,),
-        2,
+        None,
     )
     assert case.text == RINGS
 
@@ -189,7 +189,7 @@ def test_echo_names_time_step_and_cells() -> None:
     bodies = build(case)
     # E = 1e6, nu = 0.25: M = 1.2e6 Pa, c = sqrt(600) m/s; 1e-6 of strain, so 1e-5 of c.
     assert case.material["any"].sound_speed() == pytest.approx(600**0.5, rel=1e-5)
-    assert time_step(case, bodies) == pytest.approx(0.05 / 600**0.5, rel=1e-5)
+    assert time_step(case, bodies) == pytest.approx(0.04 / 600**0.5, rel=1e-5)
     assert occupied_cells(case, bodies) == 1000
     assert "8,000 particles" in echo(case, bodies)
 

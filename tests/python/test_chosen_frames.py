@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the nodes of bodies lie whose case says `frame = "auto"`."""
+"""Where the nodes of bodies lie whose case leaves that to us, as by default."""
 
 from __future__ import annotations
 
@@ -47,6 +47,7 @@ material = "{0}"
 shape = {{ box = {{ lower = ["20 mm", 0], upper = ["28 mm", "8 mm"] }} }}
 frame = "{1}"
 """
+TEXT = CASE.format(preset="", grid="", run="", contact="", soft="", block="", bodies="")
 KEYS = ("preset", "grid", "run", "contact", "soft", "block", "bodies")
 
 
@@ -62,7 +63,6 @@ def box(walls: str, lower: int = 0) -> str:
     "given",
     [
         {},
-        {"grid": 'basis = "gimp"'},
         {"soft": "volume_averaging = true"},
         {"soft": "failure = { principal_stress = { limit = 1e4 } }"},
         {"contact": "friction = 0.3\nrestitution = 0.5"},
@@ -72,12 +72,36 @@ def box(walls: str, lower: int = 0) -> str:
         {"grid": box('x_min = "slip", y_min = "fixed"')},
         {"grid": box('x_min = "slip"', -4)},
         {"grid": box('x_min = "slip"', 4), "block": "cut_at_box = true"},
+        {"block": "velocity = [7, 0]", "bodies": OTHER.format("soft", "auto")},
+        {"block": "velocity = [8, 0]", "contact": "enabled = false"},
+        {"block": "velocity = [0, 8]", "grid": box('y_min = "contact"')},
     ],
 )
 def test_in_the_body(given) -> None:
     case = case_of(**given)
     assert case.body["block"].frame == "material"
     assert case.why_in_space["block"] == ""
+
+
+def test_it_is_the_default() -> None:
+    auto, silent = (Case.from_text(text) for text in (TEXT, TEXT.replace('frame = "auto"', "")))
+    assert auto.content() == silent.content() and silent.body["block"].frame == "material"
+
+
+def test_a_device_has_them_in_space() -> None:
+    """Of those alone that are left to us; the case that was given stays as it is."""
+    case = case_of(bodies=OTHER.format("water", "auto"), contact="enabled = false")
+    there = case.all_in_space("a device makes the steps")
+    assert case.body["block"].frame == "material"
+    assert there.body["block"].frame == "updated" and there.run.cfl == 0.5
+    assert there.why_in_space == dict.fromkeys(("block", "water"), "a device makes the steps")
+    said = case.with_({"body.block.frame": "material"})
+    assert said.all_in_space("a device makes the steps").body["block"].frame == "material"
+
+
+def test_a_mistake_is_told_where_it_is_looked_for() -> None:
+    with pytest.raises(CaseError, match=r"body\.block\.velocity"):
+        case_of(block="velocity = [0, 0, 0]", bodies=OTHER.format("soft", "auto"))
 
 
 def test_the_step_follows_the_frame() -> None:
@@ -89,7 +113,8 @@ def test_the_step_follows_the_frame() -> None:
     ("given", "why"),
     [
         ({"preset": 'preset = "paper"'}, 'preset = "paper" is of nodes in space'),
-        ({"grid": 'basis = "linear"'}, 'frame = "material" needs gradients without jumps'),
+        ({"grid": 'basis = "linear"'}, 'grid.basis = "linear" is given'),
+        ({"grid": 'basis = "gimp"'}, 'grid.basis = "gimp" is given'),
         ({"grid": box('x_min = "absorbing"')}, "walls of grid.box that absorb"),
         ({"run": 'transfer = "apic"'}, "run.transfer is given"),
         ({"run": 'scheme = "musl"'}, "run.scheme is given"),
@@ -106,6 +131,14 @@ def test_the_step_follows_the_frame() -> None:
         (
             {"bodies": OTHER.format("soft", "updated")},
             "it may touch soft, whose nodes lie in space",
+        ),
+        (  # Waves have 36.7 m/s.
+            {"block": "velocity = [8, 0]", "bodies": OTHER.format("soft", "auto")},
+            "it meets soft at 0.22 of the speed of its waves",
+        ),
+        (
+            {"block": "velocity = [0, -8]", "grid": box('y_min = "contact"')},
+            "it meets grid.box.walls.y_min at 0.22 of the speed of its waves",
         ),
     ],
 )

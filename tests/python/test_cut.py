@@ -42,6 +42,7 @@ strength = { elastic = { E = "1 MPa", nu = 0.3 } }
 material = "rubber"
 shape = { disc = { centre = [0, 0], radius = "20 mm" } }
 cut_at_box = true
+frame = "updated"
 velocity = [{ expression = "-50 * x" }, { expression = "-50 * y" }]
 """
 WALLS = '{ x_min = "symmetry", y_min = "symmetry" }'
@@ -129,12 +130,18 @@ HALF = BALL_ON_FLOOR.replace("X", "0").replace("WALL", 'x_min = "slip",') + "cut
 WHOLE = BALL_ON_FLOOR.replace("X", '"-15 mm"').replace("WALL", "")
 
 
-def test_half_a_disc_on_a_floor_is_the_whole_one(tmp_path: Path) -> None:
+@pytest.mark.parametrize("frame", ["material", "updated"])
+def test_half_a_disc_on_a_floor_is_the_whole_one(tmp_path: Path, frame: str) -> None:
     """Their shells differ by where points stand on every second circle: by a per cent of its peak
-    in the force, which moves by that much with the number of circles too."""
+    in the force, which moves by that much with the number of circles too.
+
+    Forces between surfaces swing by a tenth with the time in which a wave passes two cells, so that
+    of nodes in the body it is the impulse that is compared: to .2 % of all of it at any time.
+    """
     found = []
     for text, parts in ((HALF, 2), (WHOLE, 1)):
-        run_case(Case.from_text(text), tmp_path / str(parts))
+        text += f'frame = "{frame}"\n'
+        run_case(Case.from_text(text), tmp_path / str(parts), pictures=False)
         history = read_history(tmp_path / str(parts) / "history.csv")
         written = np.isfinite(history["wall_y_min_impulse_y"])
         columns = ("time", "wall_y_min_force_y", "wall_y_min_impulse_y")
@@ -142,9 +149,10 @@ def test_half_a_disc_on_a_floor_is_the_whole_one(tmp_path: Path) -> None:
         found.append((time, parts * force, parts * impulse))
     (t, half, out), (u, whole, other) = found
     peak = np.abs(whole).max()
-    assert np.abs(half).max() == pytest.approx(peak, rel=0.01)
-    assert np.abs(np.interp(u, t, half) - whole).max() < 0.01 * peak
-    assert out[-1] == pytest.approx(other[-1], rel=0.01)
+    if frame == "updated":
+        assert np.abs(half).max() == pytest.approx(peak, rel=0.01)
+        assert np.abs(np.interp(u, t, half) - whole).max() < 0.01 * peak
+    assert np.abs(np.interp(u, t, out) - other).max() < 0.002 * np.abs(other[-1])
 
 
 CYLINDER = Cylinder(centre=(0, 0, 0), radius=8, height=16)

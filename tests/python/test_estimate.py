@@ -63,7 +63,7 @@ def test_a_block_and_a_heap_of_grains_are_stepped(dimension: int) -> None:
         corners = r'\], upper = \[("\S+ mm"), ("\S+ mm")\]'
         text = re.sub(corners, r', 0], upper = [\1, \2, "3 mm"]', text)
     lattice = f"lower = {[0.1] * dimension}, count = {[3] * dimension}, radius = 0.002"
-    text += f'[grains.balls]\nmaterial = "steel"\nlattice = {{ {lattice} }}\n'
+    text += f'[grains.balls]\nmaterial = "steel"\nframe = "updated"\nlattice = {{ {lattice} }}\n'
     case = Case.from_text(text)
     bodies = build(case)
     line = estimate.estimate_line(case, bodies, threads=1)

@@ -19,6 +19,7 @@ end_time = "1 us"
 density = 1000.0
 strength = {{ elastic = {{ E = "1 MPa", nu = 0.3 }} }}
 [body.block]
+frame = "updated"
 material = "soft"
 velocity = {velocity}
 angular_velocity = {spin}
@@ -162,6 +163,7 @@ def test_grains_have_the_field_at_their_places() -> None:
     text += """
     [grains.sand]
     material = "soft"
+    frame = "updated"
     lattice = { lower = [0, 0], count = [3, 1], radius = "2 mm" }
     velocity = [{ expression = "100 * x" }, { expression = "1 / (0.014 - x)" }]
     angular_velocity = { expression = "r" }

@@ -31,6 +31,7 @@ density = {DENSITY}
 strength = {{ elastic = {{ E = "2 MPa", nu = 0.3 }} }}
 [grains.disc]
 material = "soft"
+frame = "updated"
 damping = {{ mass = 400 }}
 lattice = {{ lower = ["-5 mm", 0], count = [1, 3], radius = {RADIUS} }}
 """
@@ -221,6 +222,7 @@ density = 1000
 strength = { elastic = { E = "1 MPa", nu = 0.3 } }
 [grains.sand]
 material = "soft"
+frame = "updated"
 packing = { lower = ["-29 mm", 0], upper = ["29 mm", "40 mm"], radius = "4 mm", count = 24 }
 """
 

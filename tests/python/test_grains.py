@@ -45,6 +45,7 @@ density = "8000 kg/m^3"
 strength = { elastic = { E = "200 GPa", nu = 0.3 } }
 [grains.sand]
 material = "glass"
+frame = "updated"
 """
 LATTICE = 'lattice = { lower = ["0 mm", "0 mm"], count = [3, 2], radius = "2.5 mm" }\n'
 INSIDE = """\

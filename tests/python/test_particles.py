@@ -166,7 +166,7 @@ def test_bad_velocities(velocities: object, part: str) -> None:
 
 def test_velocities_of_a_file(tmp_path: Path) -> None:
     """In m/s, whatever the unit of lengths; with volumes or without; they count in the hash."""
-    text = CASE.replace("velocity = [1, 0]\n", "")
+    text = CASE.replace("velocity = [1, 0]\n", 'frame = "updated"\n')
     millimetres = text.replace('"rod.csv"', '{ file = "rod.csv", unit = "mm" }')
     cases = [
         ("x,y,volume,vx,vy\n1e-4,1e-4,4e-8,1,2\n3e-4,1e-4,4e-8,3,-4\n", text),
@@ -277,7 +277,7 @@ def test_points_inside_another_body(tmp_path: Path) -> None:
     disc = (
         '[body.disc]\nmaterial = "steel"\n'
         'shape = { disc = { centre = ["14.25 mm", "5.25 mm"], radius = "5 mm" } }\n'
-        'fill = "lattice"\n'
+        'fill = "lattice"\nparticles_per_cell = 2\n'
     )
     # Half-way between the disc's particles, which stand at multiples of half a millimetre + 0.25.
     path = write(tmp_path, lattice(20, 0.5e-3, 0.25e-3), CASE + disc)
@@ -285,7 +285,7 @@ def test_points_inside_another_body(tmp_path: Path) -> None:
     assert "of its points stand inside body.disc" in sentence
     grains = (
         '[grains.sand]\nmaterial = "steel"\nlattice = { lower = ["9.25 mm", "0.25 mm"], '
-        'count = [1, 1], radius = "5 mm" }\n'
+        'count = [1, 1], radius = "5 mm" }\nparticles_per_cell = 2\n'
     )
     [sentence] = warnings_of(write(tmp_path, lattice(20, 0.5e-3), CASE + grains))
     assert "of its points stand inside grains.sand" in sentence

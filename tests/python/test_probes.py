@@ -151,6 +151,7 @@ def test_a_point_sees_a_linear_field() -> None:
         + """
 [body.left]
 material = "soft"
+frame = "updated"
 shape = { box = { lower = ["0 mm", "0 mm"], upper = ["50 mm", "50 mm"] } }
 velocity = [{ expression = "3*x - y" }, { expression = "2 + y" }]
 """
@@ -288,6 +289,7 @@ density = "2000 kg/m^3"
 strength = { elastic = { E = "1 MPa", nu = 0.3 } }
 [body.soil]
 material = "soil"
+frame = "updated"
 shape = { box = { lower = [0, 0, 0], upper = ["40 mm", "40 mm", "60 mm"] } }
 [probe.foot]
 point = ["20 mm", "20 mm", "20 mm"]

@@ -28,6 +28,7 @@ density = "1000 kg/m^3"
 strength = {{ elastic = {{ E = "1 MPa", nu = 0.3 }} }}
 [body.block]
 material = "soft"
+frame = "updated"
 shape = {{ box = {{ lower = [{zeros}], upper = [{upper}] }} }}
 velocity = [{velocity}]
 """

@@ -346,7 +346,9 @@ def test_what_check_says() -> None:
     filled = build(case)
     [disc] = filled
     shown = echo(case, filled)
-    assert "316 particles 0.005 m apart in shells, m, mass 7.85398 kg per metre, +0.000%" in shown
+    assert (
+        "708 particles 0.003333 m apart in shells, m, mass 7.85398 kg per metre, +0.000%" in shown
+    )
     assert (disc.fill, disc.mass_error) == ("shells", pytest.approx(0.0, abs=1e-14))
 
 
@@ -385,7 +387,7 @@ def test_a_shape_thinner_than_half_a_spacing_is_refused() -> None:
         with pytest.raises(CaseError, match="holds no particle"):
             fill(body(shape, spacing=1.0), grid)
     with pytest.raises(CaseError, match=r"grains\.sand\.file has a grain .* holds no particle"):
-        build(sand(np.zeros((1, 2)), np.array([0.002])))
+        build(sand(np.zeros((1, 2)), np.array([0.001])))
     with pytest.raises(CaseError, match="would need some"):
         large = Sphere(centre=(0, 0, 0), radius=1e6)
         fill(body(large, spacing=1.0), Grid(dimension=3, cell_size=1.0))

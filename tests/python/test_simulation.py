@@ -294,7 +294,8 @@ def test_history_has_a_row_for_each_step() -> None:
 
 def test_the_time_step_is_the_critical_one_and_its_limiter_is_named() -> None:
     run = {"cfl": 0.25}
-    simulation = Simulation(one_block(2, {}, run, velocity=(3.0, 4.0)), threads=1)
+    block = one_block(2, {}, run, velocity=(3.0, 4.0), frame="updated")
+    simulation = Simulation(block, threads=1)
     c = np.sqrt(YOUNG * 0.7 / (1.3 * 0.4) / DENSITY)  # of pressure waves, nu = 0.3
     assert simulation.core.dt == pytest.approx(0.25 * CELL / (c + 5.0), rel=1e-12)
     limiter = simulation.core.limiter()

@@ -74,11 +74,13 @@ density = "1000 kg/m^3"
 strength = { elastic = { E = "1 MPa", nu = 0.3 } }
 [body.block]
 material = "soft"
+frame = "updated"
 shape = { box = { lower = [0, 0], upper = ["60 mm", "30 mm"] } }
 force = ["2 N", { expression = "1000 * t" }]
 body_force = ["3 m/s^2", 0]
 [grains.balls]
 material = "soft"
+frame = "updated"
 lattice = { radius = "20 mm", count = [2, 1], lower = ["200 mm", 0] }
 force = [0, "-4 N"]
 """
@@ -241,7 +243,7 @@ def alone(force: Any, **run: Any) -> Case:
         grid=Grid(dimension=2, cell_size=CELL),
         run=Run(**{"end_time": 0.01} | run),
         material=materials(),
-        body={"block": block((3, 3), (4, 4), material="solid", body_force=force)},
+        body={"block": block((3, 3), (4, 4), material="solid", frame="updated", body_force=force)},
     )
 
 

@@ -30,10 +30,12 @@ density = 2600
 strength = {{ elastic = {{ E = "50 MPa", nu = 0.2 }} }}
 [body.lower]
 material = "rock"
+frame = "updated"
 shape = {{ box = {{ lower = {low}, upper = {middle} }} }}
 initial = {{ stress = "geostatic" }}
 [body.upper]
 material = "soil"
+frame = "updated"
 shape = {{ box = {{ lower = {middle_low}, upper = {top} }} }}
 initial = {{ stress = "geostatic"{K0} }}
 """

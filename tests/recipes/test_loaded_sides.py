@@ -21,7 +21,7 @@ def loaded(body: Body, side: str, dimension: int, pressure: Any = PRESSURE, **ru
         grid=Grid(dimension=dimension, cell_size=CELL),
         run=Run(**{"end_time": 1.0} | run),
         material={"solid": materials()["solid"]},
-        body={"body": body},
+        body={"body": body.model_copy(update={"frame": "updated"})},
         load={"load": Load(body="body", side=side, pressure=pressure)},
     )
 

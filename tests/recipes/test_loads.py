@@ -79,7 +79,8 @@ def bar(dimension: int, pressure: Any = 1000.0, **more: Any) -> Case:
 def test_one_particle_in_each_cube_between_nodes(dimension: int, shift: float) -> None:
     """A piece of its surface lies just between nodes, whatever side of them rounding chooses."""
     walls = {f"{a}_{end}": "slip" for a in "yz"[: dimension - 1] for end in ("min", "max")}
-    body = block((5, 0, 0)[:dimension], (8, 2, 2)[:dimension], material="solid", spacing=CELL)
+    lower, size = (5, 0, 0)[:dimension], (8, 2, 2)[:dimension]
+    body = block(lower, size, material="solid", spacing=CELL, frame="updated")
     load = {
         side: Load(body="body", side=side, pressure=1000.0 if side == "x_min" else 500.0)
         for side in ("x_min", "x_max")

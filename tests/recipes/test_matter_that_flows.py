@@ -404,6 +404,7 @@ def test_solids_beside_what_flows_keep_their_springs() -> None:
     discs = {
         name: {
             "material": "rubber",
+            "frame": "updated",
             "shape": {"disc": {"centre": [x, 0.0], "radius": 0.01}},
             "velocity": [speed, 0.0],
         }
@@ -519,6 +520,7 @@ density = 1000
 strength = {{ neo_hookean = {{ K = "10 MPa", G = "1 MPa" }} }}
 [body.band]
 material = "rubber"
+frame = "updated"
 shape = {{ box = {{ lower = {lower}, upper = {upper} }} }}
 velocity = [{velocity}]
 """

@@ -264,7 +264,11 @@ def test_a_fixed_funnel_holds_a_disc() -> None:
     middle = float(4 * np.sqrt(2.0) - 2 - 0.2) * CELL  # The walls, |x| = outlet + y, touch it.
     bodies = {
         "funnel": Body(shape=funnel, material="stone", motion="fixed"),
-        "disc": Body(shape=shapes.Disc(centre=(0.0, middle), radius=4 * CELL), material="solid"),
+        "disc": Body(
+            shape=shapes.Disc(centre=(0.0, middle), radius=4 * CELL),
+            material="solid",
+            frame="updated",
+        ),
     }
     on, end, g = 0.03, 0.055, 9.81
     gravity = (0.0, {"ramp": {"to": -g, "end": on}})

@@ -265,7 +265,9 @@ def check_kills(tmp_path: Path, way: str, kills: int, ranks: int) -> None:
     reached = []
     for kill in range(kills):
         more = ["--resume"] if kill else []
-        words = command("run", "case.toml", "--out", "out", "--no-pictures", "--ranks", ranks, *more)
+        words = command(
+            "run", "case.toml", "--out", "out", "--no-pictures", "--ranks", ranks, *more
+        )
         with subprocess.Popen(
             words, cwd=tmp_path, env=environment(way), stderr=subprocess.PIPE, text=True
         ) as job:

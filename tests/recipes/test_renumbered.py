@@ -54,6 +54,7 @@ def corner(dimension: int, along: int, contact: dict[str, Any]) -> dict[str, Any
         "body": {
             f"ball_{k:02d}": {
                 "material": f"m{k % 2}",
+                "frame": "updated",
                 "shape": {shape: {"centre": centre.tolist(), "radius": RADIUS}},
                 "velocity": [-0.5 - 0.01 * k] + [-0.5] * (dimension - 1),
             }

@@ -113,6 +113,7 @@ def blocks(dimension: int, overlap: float, speed: float, fixed: bool = False) ->
     over = {
         "particles": Particles(points, np.full(len(points), 0.5e-3**dimension)),
         "material": "soft",
+        "frame": "updated",
         "velocity": [*[0.0] * (dimension - 1), -speed],
     }
     elastic = {"elastic": {"E": "1 MPa", "nu": 0.3}}
@@ -249,6 +250,7 @@ def cut_ball(dimension: int, cut: int) -> Case:
                 "ball": {
                     "particles": Particles(kept[0], volumes[0]),
                     "material": "soft",
+                    "frame": "updated",
                     "velocity": [0.0] * (dimension - 1) + [-1.0],
                 },
                 "block": {"particles": Particles(kept[1], volumes[1]), "material": "soft"},

@@ -26,7 +26,7 @@ def steps_of(simulation: Simulation) -> np.ndarray:
 
 
 def block(**run: Any) -> Simulation:
-    return Simulation(one_block(2, {}, run, velocity=(0.0, 0.0)), threads=1)
+    return Simulation(one_block(2, {}, run, velocity=(0.0, 0.0), frame="updated"), threads=1)
 
 
 def test_steps_are_as_given_but_for_the_last_two() -> None:

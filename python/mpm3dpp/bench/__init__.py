@@ -28,7 +28,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm3dpp.base.errors import CaseError, nearest
-from mpm3dpp.base.frames import MATERIAL
+from mpm3dpp.base.frames import MATERIAL, UPDATED
 from mpm3dpp.base.machine import MEMORY, PARTICLE_BYTES_WITH_GRID
 from mpm3dpp.case.case import Case
 from mpm3dpp.io.folders import writable_folder
@@ -36,7 +36,7 @@ from mpm3dpp.io.foreign import refuse_to_draw
 from mpm3dpp.run.device import CPU, CUDA, ONE_PROCESS
 
 from .cases import BENCHES, Bench
-from .numerics import DEFAULT, Numerics
+from .numerics import DEFAULT, Numerics, words_of
 from .process import Part, Process
 from .result import result_of
 
@@ -100,6 +100,7 @@ def measure(
     """
     bench = find(name)
     cells = size or bench.size
+    numerics = _with_frame(bench, cells, numerics, device)
     specs = [
         Part(part, cells, threads, ranks, device, numerics) for part in (name, bench.twin) if part
     ]
@@ -127,6 +128,7 @@ def series(
     """
     bench = find(name)
     lengths = block_lengths(steps or STEPS)
+    numerics = _with_frame(bench, sizes[0], numerics, device)
     specs = [
         Part(name, size, count, parts, device, numerics)
         for size in sizes
@@ -141,6 +143,15 @@ def series(
         result_of(alone, part, case, sum(lengths), [found], end)
         for part, found, end in zip(specs, blocks, ends, strict=True)
     ]
+
+
+def _with_frame(bench: Bench, size: int, numerics: Numerics, device: str) -> Numerics:
+    """Return the numerics with the frame that a case of them has which says nothing of it."""
+    if numerics.frame is not None:
+        return numerics
+    in_space = bench.loose or device == CUDA
+    frame = UPDATED if in_space else words_of(bench.case(size, numerics))["frame"]
+    return numerics._replace(frame=frame)
 
 
 def _allowed(bench: Bench, size: int, numerics: Numerics, device: str, ranks: int) -> Case:

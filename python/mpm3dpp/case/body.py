@@ -6,12 +6,12 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
-from pydantic import PrivateAttr, model_validator
+from pydantic import model_validator
 
 from mpm3dpp.base.damping import Damping
 from mpm3dpp.base.errors import violation
 from mpm3dpp.base.expression import ForceField, SpinField, TotalForce, VelocityField
-from mpm3dpp.base.frames import ALONG, FRAMES, UPDATED, particles_along
+from mpm3dpp.base.frames import ALONG, AUTO, FRAMES, UPDATED, particles_along
 from mpm3dpp.base.model import CaseModel, Choice, Count, Flag, Text
 from mpm3dpp.base.units import PositiveLength
 from mpm3dpp.shapes.base import MaybeShape
@@ -84,10 +84,8 @@ class Body(CaseModel):
     body_force: ForceField | None = None
     force: TotalForce | None = None
     damping: Damping | None = None
-    frame: Annotated[str, Choice(FRAMES)] = UPDATED
+    frame: Annotated[str, Choice(FRAMES)] = AUTO
     motion: MaybeMotion = None
-
-    _auto: bool = PrivateAttr(False)  # Its frame is chosen (choose_frames.py).
 
     @model_validator(mode="after")
     def _one_spacing(self) -> Body:

@@ -76,6 +76,7 @@ class Case(CaseModel):
     _file_path: str = PrivateAttr("")
     _lines: dict[KeyPath, int] = PrivateAttr(default_factory=dict)
     _why_in_space: dict[str, str] = PrivateAttr(default_factory=dict)
+    _in_space: str = PrivateAttr("")  # Why no frame may be chosen, if there is a reason.
 
     @classmethod
     def complete(cls, data: Any) -> Any:
@@ -93,7 +94,7 @@ class Case(CaseModel):
         Raises:
             ValueError: a violation, of which the sentence is made where the case is read or run.
         """
-        self._why_in_space = choose_frames(self)
+        self._why_in_space = choose_frames(self, self._in_space)
         flows = any(self.flows(part) for part in self.parts())
         in_space = not all_in_bodies(self)
         chosen = with_choices(self.grid.basis, self.run, self.contact, flows, in_space)
@@ -107,6 +108,17 @@ class Case(CaseModel):
         Of those alone whose frame is "auto" and that deform.
         """
         return dict(self._why_in_space)
+
+    def all_in_space(self, why: str) -> Case:
+        """Return this case with the nodes of all bodies in space that leave that to us.
+
+        Args:
+            why: of the program that runs it, as `why_in_space` tells it.
+        """
+        case = self.model_copy(update={"body": dict(self.body), "grains": dict(self.grains)})
+        case._in_space = why
+        case.complete_and_check()
+        return case
 
     @property
     def text(self) -> str:

@@ -7,12 +7,16 @@ touches and the rest of the case go with them (docs/decisions/0084-a-frame-by-th
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
+from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.frames import ALONG, AUTO, MATERIAL, UPDATED
 
 from .body import Body
+from .choices import BASIS
 from .frame import against_all, against_body, keys_at_nodes
+from .meetings import meets_too_fast
 
 if TYPE_CHECKING:
     from mpm3dpp.grains import Grains
@@ -20,36 +24,38 @@ if TYPE_CHECKING:
     from .case import Case
 
 
-def choose_frames(case: Case) -> dict[str, str]:
+def choose_frames(case: Case, of_program: str = "") -> dict[str, str]:
     """Choose where the nodes of each body lie of which the case leaves it to us.
 
     Args:
         case: its entries that say "auto" are copied, as another case may have them too.
+        of_program: why the program that runs it keeps all nodes in space, if it does.
 
     Returns:
         Why the nodes of an entry, by its name, lie in space; "" where they lie in the body. Of
         those alone that leave it to us and deform.
     """
-    asked = {name: part for name, part in case.parts().items() if leaves_it(part)}
-    if not asked:
-        return {}
-    why = _reasons(case, [name for name in asked if _deforms(case, name)])
-    for name, part in asked.items():
-        table = case.body if name in case.body else case.grains
-        in_space = why.get(name, "it does not deform")
-        table[name] = _with_frame(part, UPDATED if in_space else MATERIAL)
+    asked = [name for name, part in case.parts().items() if leaves_it(part)]
+    why: dict[str, str] = {}
+    with suppress(CaseError, ValueError):  # A mistake, which is told where it is looked for.
+        deform = [name for name in asked if _deforms(case, name)]
+        why = dict.fromkeys(deform, of_program) if of_program else _reasons(case, deform)
+    tables: list[dict[str, Any]] = [case.body, case.grains]
+    for table in tables:
+        for name in (one for one in asked if one in table):
+            in_space = why.get(name, "it does not deform")
+            table[name] = _with_frame(table[name], UPDATED if in_space else MATERIAL)
     return why
 
 
 def leaves_it(part: Body | Grains) -> bool:
     """Return whether a case leaves it to us where the nodes of an entry lie."""
-    return part.frame == AUTO or (part._auto and "frame" not in part.model_fields_set)
+    return part.frame == AUTO or "frame" not in part.model_fields_set
 
 
 def _with_frame(part: Any, frame: str) -> Any:
     """Return a copy of an entry in a frame that can be chosen anew."""
     part = part.model_copy()
-    part._auto = True
     part.model_fields_set.discard("frame")
     spaced = {"particles_per_cell", "spacing"} & part.model_fields_set
     part.__dict__["frame"] = frame
@@ -70,7 +76,7 @@ def _deforms(case: Case, name: str) -> bool:
 def _reasons(case: Case, names: list[str]) -> dict[str, str]:
     """Return why the nodes of each entry lie in space, "" for nothing."""
     of_all = _of_all(case)
-    why = {name: of_all or _sentence(next(against_body(case, name), None)) for name in names}
+    why = {name: of_all or _against(case, name) for name in names}
     others = [name for name in case.parts() if name not in why and _deforms(case, name)]
     in_space = [name for name, reason in why.items() if reason]
     in_space += [name for name in others if case.parts()[name].frame == UPDATED]
@@ -80,6 +86,11 @@ def _reasons(case: Case, names: list[str]) -> dict[str, str]:
     return {name: reason or touches for name, reason in why.items()}
 
 
+def _against(case: Case, name: str) -> str:
+    """Return what the table of an entry has against nodes in it, or how fast it meets others."""
+    return _sentence(next(against_body(case, name), None)) or meets_too_fast(case, name)
+
+
 def _of_all(case: Case) -> str:
     """Return what of the case keeps all bodies on nodes in space."""
     if case.preset is not None:
@@ -87,6 +98,8 @@ def _of_all(case: Case) -> str:
     for key in ("transfer", "scheme"):
         if key in case.run.model_fields_set:
             return f"run.{key} is given, which is of nodes in space"
+    if case.grid.basis != BASIS:
+        return f'grid.basis = "{case.grid.basis}" is given, which is of nodes in space'
     at_nodes = keys_at_nodes(case) if case.contact.enabled else []
     if at_nodes:
         return f"contact.{at_nodes[0]} is given, which is of contact at nodes"

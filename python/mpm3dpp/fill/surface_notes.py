@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +13,9 @@ from mpm3dpp.base.frames import UPDATED
 from mpm3dpp.case.box import CONTACT, FACES
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.frame import in_body
+from mpm3dpp.case.meetings import FASTEST, velocity_at_start
 
 from .parts import Filled
-
-_FASTEST = 0.2
-"""Speed of meeting over that of waves above which points lie as deep as springs reach."""
 
 
 def surface_notes(case: Case, bodies: Filled) -> list[str]:
@@ -28,12 +25,12 @@ def surface_notes(case: Case, bodies: Filled) -> list[str]:
         waves = case.material[case.parts()[name].material].sound_speed()
         for other, speed in _meetings(case, bodies, name):
             pair = frozenset((key_text(case.part_path(name)), other))
-            if speed > _FASTEST * waves and pair not in told:
+            if speed > FASTEST * waves and pair not in told:
                 told.add(pair)
                 found.append(
                     f"{key_text(case.part_path(name))} and {other} approach at "
                     f"{speed / waves:.2g} of the speed of its waves, {waves:.3g} m/s: above "
-                    f"{_FASTEST:g} of it surfaces may go through each other where they are round, "
+                    f"{FASTEST:g} of it surfaces may go through each other where they are round, "
                     'thin or fold; give frame = "updated" if a run warns of that'
                 )
                 break
@@ -74,11 +71,11 @@ def bond_of_nothing(case: Case, k: int, why: str = "") -> CaseError:
 
 def _meetings(case: Case, bodies: Filled, name: str) -> Iterator[tuple[str, float]]:
     """Yield what an entry approaches, and how fast [m/s]; of motions that are numbers."""
-    own = _velocity(case, name)
+    own = velocity_at_start(case, name)
     if own is None:
         return
     for other in bodies.parts if case.contact.enabled else ():
-        theirs = _velocity(case, other)
+        theirs = velocity_at_start(case, other)
         if other == name or theirs is None:
             continue
         way = _middle(bodies, other) - _middle(bodies, name)
@@ -96,16 +93,3 @@ def _middle(bodies: Filled, name: str) -> NDArray[np.float64]:
     """Return the middle of the box around an entry [m]."""
     seen = bodies.parts[name].survey
     return np.asarray(0.5 * (seen.lower.min(axis=0) + seen.upper.max(axis=0)))
-
-
-def _velocity(case: Case, name: str) -> NDArray[np.float64] | None:
-    """Return how an entry moves at the start [m/s]; None where no numbers say so."""
-    part: Any = case.parts()[name]
-    motion = getattr(part, "motion", None)
-    given = part.velocity if motion is None else motion.velocity
-    dimension = case.grid.dimension
-    if not given:
-        return np.zeros(dimension)
-    if not all(isinstance(v, int | float) for v in given):
-        return None
-    return np.array(given, dtype=float)

@@ -8,12 +8,12 @@ from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import PrivateAttr, model_validator
+from pydantic import model_validator
 
 from mpm3dpp.base.damping import Damping
 from mpm3dpp.base.errors import CaseError, Path, violation
 from mpm3dpp.base.expression import ForceField, SpinField, TotalForce, VelocityField
-from mpm3dpp.base.frames import ALONG, FRAMES, UPDATED, particles_along
+from mpm3dpp.base.frames import ALONG, AUTO, FRAMES, UPDATED, particles_along
 from mpm3dpp.base.machine import BODY_BYTES, MEMORY, memory_text
 from mpm3dpp.base.model import CaseModel, Choice, Count, Text
 from mpm3dpp.base.units import Point, PositiveLength
@@ -127,9 +127,7 @@ class Grains(CaseModel):
     body_force: ForceField | None = None
     force: TotalForce | None = None
     damping: Damping | None = None
-    frame: Annotated[str, Choice(FRAMES)] = UPDATED
-
-    _auto: bool = PrivateAttr(False)  # Their frame is chosen (case/choose_frames.py).
+    frame: Annotated[str, Choice(FRAMES)] = AUTO
 
     @model_validator(mode="after")
     def _one_way(self) -> Grains:

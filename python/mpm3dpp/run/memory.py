@@ -25,6 +25,8 @@ _WITH_EDGES = 1.15  # of a rank's part of the core's memory
 _PROGRAM_BYTES = 62 << 20
 """Python and the libraries of a run, and what its start leaves [bytes]: measured with CPython 3.11,
 numpy 2.4 and h5py 3.16 on Linux."""
+_SEARCH_BYTES = 57 << 20
+"""What finds the particles of contact points [bytes]: measured likewise, with scipy 1.17."""
 
 
 def occupied_cells(case: Case, bodies: Filled) -> int:
@@ -86,12 +88,18 @@ def _surface(case: Case, part: FilledPart) -> float:
     return faces * float(case.grid.cell_size) ** (D - 1)
 
 
-def process_bytes(core: int, frames: int = 0) -> int:
+def process_bytes(core: int, frames: int = 0, surfaces: bool = False) -> int:
     """Return about the peak of the process of a run that writes frames, by that of the core.
+
+    Args:
+        core: bytes of the core.
+        frames: how many.
+        surfaces: whether bodies touch by points of their surfaces, which are searched for.
 
     Pictures have a process of their own.
     """
-    return _PROGRAM_BYTES + round((1.0 + FRAME_SHARE) * core) + _BYTES_OF_FRAME * frames
+    program = _PROGRAM_BYTES + surfaces * _SEARCH_BYTES
+    return program + round((1.0 + FRAME_SHARE) * core) + _BYTES_OF_FRAME * frames
 
 
 def rank_line(core: int, ranks: int) -> str:

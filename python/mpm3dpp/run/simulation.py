@@ -24,7 +24,7 @@ from mpm3dpp.ranks.world import World
 from .add_part import add_actions
 from .body_numbers import number_of, numbers_of
 from .checkpoints import check_same
-from .device import CPU, check_device, take_device
+from .device import CPU, CUDA, check_device, take_device
 from .fill_core import fill_core, new_core, prepare_core
 
 
@@ -81,6 +81,8 @@ class Simulation:
             remedy = 'give what mpm3dpp.load_case("case.toml") returns, or make a Case'
             raise CaseError("must be a Case", remedy, key="case", value=case)
         self._wanted = check_device(device, alone=world is None)
+        if self._wanted == CUDA:
+            case = case.all_in_space("a device makes the steps")
         filled = build(case, world)
         self.case, self._world = case, world
         cores = world.cores_of_rank() if world else None

@@ -208,17 +208,18 @@ def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
     cells, frames = occupied_cells(case, bodies), frame_count(case, bodies)
     box = case.grid.box_cells
     bounds = " x ".join(str(n) for n in box) + " cells" if box else "no bounds"
+    meets = surfaces_touch(case, bodies.parts.values())
     contact = "none, the bodies are bonded" if case.contact.bonded else "none"
     if case.contact_enabled:
         contact = f"{case.contact.detection} detection, {_response(case)}"
         if in_body(case):
             contact = f"between surfaces, restitution {case.contact.restitution:g}"
         contact += f", friction {case.contact.friction:g}"
-    elif surfaces_touch(case, bodies.parts.values()):
+    elif meets:
         contact = f"of surfaces with themselves and walls, restitution {case.contact.restitution:g}"
     lines += [
         f"total: {particles:,} particles, mass {mass:.6g} kg{per_metre}, "
-        f"memory about {process_bytes(core, frames) / 2**20:,.0f} MiB, of which the core "
+        f"memory about {process_bytes(core, frames, meets) / 2**20:,.0f} MiB, of which the core "
         f"{core / 2**20:,.1f} MiB",
         *([rank_line(core, ranks)] if ranks > 1 else []),
         f"grid: {case.grid.dimension}D, cells of {case.grid.cell_size:.4g} m, {cells:,} occupied, "
