@@ -9,17 +9,20 @@ from typing import Any
 from mpm3dpp import Case, _core
 from mpm3dpp.case import choices
 
-DEFAULT = "default"
+UPDATED = "updated"
+"""What a case gets that says nothing but `frame = "updated"`."""
 MATERIAL = "material"
-"""The default, of bodies on nodes of their own."""
+"""What a case gets that says nothing, of solids: nodes in the body."""
+AUTO = "auto"
+"""What a case gets that says nothing, whatever it is."""
 
 
 @dataclass(frozen=True)
 class Numerics:
     """What a basis' name stands for: "gimp", "quadratic_bspline+apic~impulses", "gimp+xpic=4@0.5".
 
-    "default" stands for what a case gets that says nothing, but for the scheme; "material" for the
-    same of bodies with `frame = "material"`, as far as they deform.
+    "auto" stands for what a case gets that says nothing, "material" and "updated" for the same with
+    the frame said of all bodies that deform, "updated" but for the scheme.
 
     Attributes:
         basis: its name in the core.
@@ -27,7 +30,7 @@ class Numerics:
         number: of the transfer, where the name gives one.
         response: `contact.response` of the core, where the name gives one.
         factor: of the critical time step, where the name gives one: instead of the problem's.
-        frame: of bodies that deform, where the name gives one.
+        frame: of bodies that deform, where the name gives one; else "updated".
     """
 
     basis: str
@@ -42,11 +45,12 @@ class Numerics:
         """Take a name apart."""
         name, _, factor = name.partition("@")
         name, _, response = name.partition("~")
-        if name in (DEFAULT, MATERIAL):
+        if name in (UPDATED, MATERIAL, AUTO):
             usual = choices.IN_BODIES if name == MATERIAL else choices.AFFINE
             cfl = float(factor) if factor else usual["cfl"]
-            response, frame = response or choices.RESPONSE, name if name == MATERIAL else ""
-            return cls(choices.BASIS, choices.TRANSFER, None, cfl, response, frame)
+            return cls(
+                choices.BASIS, choices.TRANSFER, None, cfl, response or choices.RESPONSE, name
+            )
         basis, _, transfer = name.partition("+")
         word, _, number = (transfer or "flip").partition("=")
         return cls(
@@ -66,17 +70,25 @@ class Numerics:
     def give_case(self, case: Case) -> None:
         """Give a case this basis and transfer, and this factor; without one its own, or 0.25."""
         own = case.run.cfl if "cfl" in case.run.model_fields_set else choices.OTHERS["cfl"]
-        case.grid.basis, case.run.transfer = self.basis, self.table()
+        for body in case.body.values():
+            if body.motion is None:
+                body.frame = self.frame or UPDATED
+                if self.frame in (MATERIAL, AUTO):
+                    body.particles_per_cell = None  # By default of the frame.
+        case.grid.basis = self.basis
+        if self.frame == AUTO:
+            for table, key in ((case.run, "transfer"), (case.run, "scheme"), (case.run, "cfl")):
+                table.model_fields_set.discard(key)
+            case.complete_and_check()
+            return
+        case.run.transfer = self.table()
         case.run.cfl = self.factor or own
         if self.response:
             case.contact.response = self.response
-        for body in case.body.values():
-            if self.frame and body.motion is None:
-                body.frame, body.particles_per_cell = self.frame, None  # By default of the frame.
 
     def give_core(self, settings: _core.Settings, factor: float) -> None:
         """Give settings of the core this basis and transfer, and this factor or else `factor`."""
-        assert not self.frame  # A body has it, which the core's settings do not know.
+        assert self.frame in ("", UPDATED)  # A body has it, which the core's settings do not know.
         settings.grid.basis, settings.run.transfer.word = self.basis, self.transfer
         if self.number is not None:
             table = self.table()

@@ -29,7 +29,7 @@ from . import (
     written,
 )
 from .figure import Figure
-from .numerics import DEFAULT, MATERIAL
+from .numerics import MATERIAL, UPDATED
 from .scene import Failed
 
 BASES = ("linear", "gimp")
@@ -185,19 +185,19 @@ def _slow_runs() -> Iterator[Run]:
             yield Run("E10", groups.offset_spheres, "musl", 3, basis, more, True)
 
 
-def _with_defaults(runs: list[Run]) -> Iterator[Run]:
-    """Return what has been run with GIMP, FLIP and MUSL once more as a case gets it."""
+def _in_space(runs: list[Run]) -> Iterator[Run]:
+    """Return what has been run with GIMP, FLIP and MUSL once more, as a case gets it in space."""
     for run in runs:
         options = {key: value for key, value in run.options.items() if key != "factor"}
         lattice = options.get("fill") == LATTICE["fill"]
         if (run.basis, run.scheme) == ("gimp", "musl") and not lattice:
             scheme = choices.AFFINE["scheme"]
-            yield replace(run, basis=DEFAULT, scheme=scheme, options=options)
+            yield replace(run, basis=UPDATED, scheme=scheme, options=options)
 
 
 def _with_impulses() -> Iterator[Run]:
     """Return small patches of contact, and what rolls, without springs (decision 0053)."""
-    numerics, scheme = f"{DEFAULT}~{choices.OTHER_RESPONSE}", choices.AFFINE["scheme"]
+    numerics, scheme = f"{UPDATED}~{choices.OTHER_RESPONSE}", choices.AFFINE["scheme"]
     yield Run("C5", rolling.rolling_on_discs, scheme, 2, numerics, {"cells": 8})
     yield Run("C6", chain.disc_column, scheme, 2, numerics)
     yield Run("E9", incline.rolling, scheme, 2, numerics, {"cells": 8})
@@ -256,6 +256,7 @@ def _in_body() -> Iterator[Run]:
     yield from runs("E9", written.rolling_disc, {"cells": 8}, {"cells": 16})
     yield from runs("C5", contact.rolling_on_discs, {"cells": 8}, {"cells": 16, "slow": True})
     yield from runs("C6", contact.disc_column, {"cells": 10}, {})
+    yield from runs("Taylor", examples.taylor_bar, solid | {"slow": True})
 
 
 _SECONDS = (
@@ -270,13 +271,13 @@ def _with_others_slow(runs: Iterable[Run]) -> Iterator[Run]:
     for run in runs:
         fine = run.options.get("cells", 0) >= (200 if run.dimension == 2 else 26)
         seconds = run.make in _SECONDS or fine
-        other = run.basis.partition("~")[0] not in (DEFAULT, MATERIAL)
+        other = run.basis.partition("~")[0] not in (UPDATED, MATERIAL)
         long = (seconds and other) or (fine and run.make is bars.five_bars)
         yield replace(run, slow=run.slow or long)
 
 
 _WRITTEN = list(_runs())
 # Runs that differ in their factor alone are one with the default's.
-_OTHERS = [*_with_defaults(_WRITTEN), *_with_impulses(), *_in_body()]
+_OTHERS = [*_in_space(_WRITTEN), *_with_impulses(), *_in_body()]
 _ALL = {run.title: run for run in [*_WRITTEN, *_OTHERS]}
 RUNS = list(_with_others_slow(_ALL.values()))

@@ -26,7 +26,7 @@ def test_two_bars_at_small_speeds(cells: int, speed: float, passes: bool) -> Non
 
 def test_the_dam_s_front_is_that_of_the_page() -> None:
     page = (ROOT / "docs" / "verification.md").read_text()
-    [told] = re.findall(r"W1 dam_break usf 2D default.*?at most \((.*?)\)", page)
+    [told] = re.findall(r"W1 dam_break usf 2D updated.*?at most \((.*?)\)", page)
     found = dict(part.split(": ") for part in told.split(", "))
     rows = (ROOT / "examples" / "15_dam_break" / "README.md").read_text().splitlines()
     [times] = [row.split("|")[2:-1] for row in rows if row.startswith("| T ")]

@@ -50,12 +50,12 @@ def wrong(title: str, figures: list[Figure], stopped: str, misses: dict) -> list
     return said
 
 
-BY_DEFAULT = {(run.problem, run.make) for run in RUNS if run.basis.startswith("default")}
+BY_DEFAULT = {(run.problem, run.make) for run in RUNS if run.basis.startswith("updated")}
 
 
 def is_slow(run):
     """What users get by default, in both frames, is run in each test run; others of it are slow."""
-    other = not run.basis.startswith(("default", "material"))
+    other = not run.basis.startswith(("updated", "material"))
     other = other and (run.problem, run.make) in BY_DEFAULT
     return run.slow or other
 

@@ -64,9 +64,9 @@ class Body(CaseModel):
         damping: what damps its motion beside its material, in proportion to the mass or locally;
             None for nothing.
         frame: where its nodes lie: in space, "updated", where any flow is possible; in the body,
-            "material", where they keep its motion and nothing of it is lost, as of bodies of few
-            cells that vibrate, spin, hit or roll (no fluids, nothing that erodes); or, "auto", in
-            the body where its material, what it may touch and the rest of the case allow that.
+            "material", where they keep its motion and nothing of it is lost (no fluids, nothing
+            that erodes); or, "auto", in the body where its material, what it may touch and how
+            fast, and the rest of the case allow that.
         motion: "fixed", or a motion that the body has whatever acts on it; it does not deform
             then; None for a body that is free to move.
     """

@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from mpm3dpp.base.errors import CaseError, nearest
+from mpm3dpp.case.case import Case
 from mpm3dpp.io.probe_tables import read_probe
 from mpm3dpp.io.read_history import read_history
 from mpm3dpp.run.run import run_case
@@ -50,21 +52,29 @@ class Judged:
         return OK if self.within else MISSED
 
 
-def judge(benchmark: Benchmark, threads: int | None = None) -> list[Judged]:
+def judge(
+    benchmark: Benchmark,
+    threads: int | None = None,
+    only: Sequence[str] = (),
+    change: Callable[[Case], Case] | None = None,
+) -> list[Judged]:
     """Run a benchmark, and return its figures.
 
     Args:
         benchmark: which.
         threads: of each run.
+        only: which of its variants; all by default.
+        change: what is changed of each case, such as the frame.
 
     Raises:
         CaseError: what is taken is no column of the run.
         RunError: a run became unstable.
     """
     found = []
-    for variant in benchmark.variants:
+    for variant in only or benchmark.variants:
         with tempfile.TemporaryDirectory() as folder:
             case = benchmark.case(variant)
+            case = case if change is None else change(case)
             run_case(case, Path(folder) / "out", threads=threads, pictures=False)
             takes = benchmark.problem.take
             tables = {

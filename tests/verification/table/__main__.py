@@ -13,12 +13,15 @@ from pathlib import Path
 from . import report
 from .measures import Measured, timed
 from .problems import PROBLEMS
+from .told import MORE
 
 PAIRS = (
     "linear", "gimp", "gimp+xpic=4", "quadratic_bspline", "quadratic_bspline+apic",
     "quadratic_bspline+aflip=0.97", "quadratic_bspline+xpic=4",
 )  # fmt: skip
 SCHEMES, FACTORS = ("musl", "usf", "usl"), ("0.25", "0.5", "0.8")
+OWN = "its own"
+"""The factor of a pair that has one, such as "auto"."""
 KEY = ("problem", "pair", "scheme", "factor")
 Key = tuple[str, ...]
 
@@ -26,7 +29,8 @@ Key = tuple[str, ...]
 def measure(key: Key) -> tuple[Key, Measured]:
     """Run one row."""
     problem, pair, scheme, factor = key
-    return key, timed(PROBLEMS[problem], f"{pair}@{factor}", scheme)
+    name = pair if factor == OWN else f"{pair}@{factor}"
+    return key, timed((PROBLEMS | MORE)[problem], name, scheme)
 
 
 def rows(chosen: argparse.Namespace) -> Iterator[Key]:
@@ -59,7 +63,7 @@ def main() -> None:
     """Run what is missing; print each row as it comes."""
     parser = argparse.ArgumentParser(prog="python -m verification.table", description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("table.csv"))
-    for name, of in (("problems", PROBLEMS), ("pairs", PAIRS), ("schemes", SCHEMES),
+    for name, of in (("problems", PROBLEMS | MORE), ("pairs", PAIRS), ("schemes", SCHEMES),
                      ("factors", FACTORS)):  # fmt: skip
         parser.add_argument(f"--{name}", help=f"separated by commas, of {', '.join(of)}")
     parser.add_argument("--workers", type=int, default=2, help="runs at a time, each on one core")

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from mpm3dpp import Case, RunError, Simulation, _core
+from mpm3dpp.case.frame import all_in_bodies
 
 from ..numerics import Numerics
 from ..scene import Array, Failed
@@ -53,8 +54,9 @@ class Watched:
     def __init__(self, case: Case, name: str, scheme: str) -> None:
         case.run.scheme = scheme
         Numerics.named(name).give_case(case)
+        in_body = all_in_bodies(case)
         self.cell, rows = case.grid.cell_size, []
-        self.affine = _core.transfers[case.run.transfer.word]["affine"]
+        self.affine = not in_body and _core.transfers[case.run.transfer.word]["affine"]
         self.simulation = Simulation(case, threads=1)
         self.start = {body: self.position(body) for body in self.simulation.bodies}
         self.spin_at_start = self.spin()

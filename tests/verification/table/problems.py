@@ -11,8 +11,9 @@ import numpy as np
 
 from mpm3dpp import Case, load_case
 
-from .. import bars, column, discs, examples
+from .. import bars, column, discs, examples, in_body, in_body_contact
 from ..figure import Figure, reference
+from ..numerics import AUTO, MATERIAL
 from ..scene import Failed, Scene
 from . import fields
 from .measures import Measured, Watched
@@ -127,16 +128,23 @@ def _figures(
 def vibration(name: str, scheme: str) -> Measured:
     """E1: what is left of the amplitude of a bar after ten periods."""
     figure = "amplitude after 10 periods over the first"
+    if name == AUTO:
+        return _figures(in_body.vibration, figure, MATERIAL, scheme, cells=26)
     return _figures(column.vibration, figure, name, scheme, cells=26)
 
 
 def two_bars(name: str, scheme: str) -> Measured:
     """E2: the velocity of the bar that was hit."""
-    return _figures(bars.two_bars, "second bar's velocity after", name, scheme, cells=100)
+    figure = "second bar's velocity after"
+    if name == AUTO:
+        return _figures(in_body.two_bars, figure, MATERIAL, scheme, cells=100)
+    return _figures(bars.two_bars, figure, name, scheme, cells=100)
 
 
 def two_discs(name: str, scheme: str) -> Measured:
     """E5: the restitution of Sulsky's discs."""
+    if name == AUTO:
+        return _figures(in_body_contact.sulsky_discs, "restitution", MATERIAL, scheme, cells=40)
     return _figures(discs.sulsky_discs, "restitution", name, scheme)
 
 
