@@ -93,7 +93,7 @@ def test_what_they_do_not_go_with(before: str, after: str, said: str) -> None:
     ],
 )
 def test_what_is_for_contact_at_nodes_is_not_for_them(given: str, key: str, said: str) -> None:
-    both = CASE.replace('[body.b]\nmaterial = "m"\n', f'[body.b]\nmaterial = "m"\n{A}')
+    both = CASE.replace(SPACE, A)
     with pytest.raises(CaseError) as told:
         Case.from_text(both.replace("enabled = false", given))
     messages = [str(told.value), *map(str, getattr(told.value, "others", []))]
@@ -102,7 +102,7 @@ def test_what_is_for_contact_at_nodes_is_not_for_them(given: str, key: str, said
 
 def test_walls_that_hold_them_and_contact() -> None:
     walls = f'{GRID}box = {{ {BOX}, walls = "slip" }}\n'
-    both = CASE.replace('[body.b]\nmaterial = "m"\n', f'[body.b]\nmaterial = "m"\n{A}')
+    both = CASE.replace(SPACE, A)
     text = both.replace(GRID, walls)
     Case.from_text(text.replace("enabled = false", ""))
     with pytest.raises(CaseError, match="slip or fixed and a restitution, yet"):
@@ -194,7 +194,7 @@ def test_a_velocity_that_it_has_may_be_set() -> None:
 
 
 def test_another_one_keeps_its_velocity_where_one_is_set() -> None:
-    two = CASE.replace('[body.b]\nmaterial = "m"\n', f'[body.b]\nmaterial = "m"\n{A}')
+    two = CASE.replace(SPACE, A)
     simulation = Simulation(Case.from_text(two))
     simulation.advance(20)
     before = simulation.column("b", "velocity")
@@ -237,7 +237,7 @@ def test_grains_of_such_bodies() -> None:
 def test_bodies_that_meet_too_fast_are_told_of(fast: bool) -> None:
     """Waves go at 116 m/s; two discs that part are no matter, nor a wall that one flies from."""
     walls = f'{GRID}box = {{ {BOX}, walls = {{ x_max = "contact" }} }}\n'
-    both = CASE.replace('[body.b]\nmaterial = "m"\n', f'[body.b]\nmaterial = "m"\n{A}')
+    both = CASE.replace(SPACE, A)
     text = both.replace(GRID, walls).replace("enabled = false", "")
     speeds = (20.0, -12.0) if fast else (-60.0, -12.0)
     for name, speed in zip("ab", speeds, strict=True):
@@ -256,7 +256,7 @@ def test_walls_that_are_met_too_fast_are_told_of_without_contact_of_bodies_too()
 
 def test_an_estimate_of_bodies_with_a_restitution(tmp_path: Path) -> None:
     """It times a block, or a heap, of the same frame; `check` prints it."""
-    text = CASE.replace('[body.b]\nmaterial = "m"\n', f'[body.b]\nmaterial = "m"\n{A}')
+    text = CASE.replace(SPACE, A)
     (tmp_path / "case.toml").write_text(text.replace("enabled = false", "restitution = 0.5"))
     told = mpm3dpp("check", "case.toml", cwd=tmp_path)
     assert told.returncode == 0
@@ -273,7 +273,7 @@ def test_an_estimate_of_bodies_with_a_restitution(tmp_path: Path) -> None:
     ],
 )
 def test_what_a_pair_has(pair: str, said: str) -> None:
-    text = CASE.replace('[body.b]\nmaterial = "m"\n', f'[body.b]\nmaterial = "m"\n{A}')
+    text = CASE.replace(SPACE, A)
     listed = f'[[contact.pair]]\nbodies = ["a", "b"]\n{pair}'
     text = text.replace("enabled = false", listed)
     if not said:
