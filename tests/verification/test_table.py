@@ -44,7 +44,8 @@ def test_the_page_and_the_picture(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     text = (tmp_path / "choices.md").read_text()
     assert "| quadratic_bspline+aflip=0.97, usf | " in text
     assert (tmp_path / "choices.png").stat().st_size > 10_000
-    everything = len(table.PAIRS) * len(table.SCHEMES) * len(table.FACTORS)
+    assert "| mean of all | 0.0" in text
+    everything = len(table.PAIRS) * len(table.SCHEMES) * len(table.FACTORS) + 2  # of the frames
     assert len(report.means(report.read(file))) == everything
 
 

@@ -20,8 +20,6 @@ PAIRS = (
     "quadratic_bspline+aflip=0.97", "quadratic_bspline+xpic=4",
 )  # fmt: skip
 SCHEMES, FACTORS = ("musl", "usf", "usl"), ("0.25", "0.5", "0.8")
-OWN = "its own"
-"""The factor of a pair that has one, such as "auto"."""
 KEY = ("problem", "pair", "scheme", "factor")
 Key = tuple[str, ...]
 
@@ -29,7 +27,7 @@ Key = tuple[str, ...]
 def measure(key: Key) -> tuple[Key, Measured]:
     """Run one row."""
     problem, pair, scheme, factor = key
-    name = pair if factor == OWN else f"{pair}@{factor}"
+    name = pair if factor == report.OWN else f"{pair}@{factor}"
     return key, timed((PROBLEMS | MORE)[problem], name, scheme)
 
 

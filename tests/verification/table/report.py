@@ -5,12 +5,16 @@ from __future__ import annotations
 
 import csv
 import math
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 import matplotlib
 
 from .problems import PROBLEMS
+from .told import MORE
 
+OWN = "its own"
+"""The factor of a pair that has one, such as "auto"."""
 Rows = dict[tuple[str, ...], dict[str, str]]
 LEAST, MOST = 1e-3, 1.0  # errors below and above count as these in a mean
 MARKERS = {"musl": "o", "usf": "s", "usl": "^"}
@@ -30,11 +34,14 @@ def error(row: dict[str, str]) -> float:
     return MOST if row["stopped"] or math.isnan(found) else min(max(found, LEAST), MOST)
 
 
-def means(rows: Rows) -> dict[tuple[str, ...], tuple[float, float, int]]:
+def means(
+    rows: Rows, problems: Collection[str] = PROBLEMS
+) -> dict[tuple[str, ...], tuple[float, float, int]]:
     """By pair, scheme and factor: geometric mean of the errors, seconds, how many stopped."""
     found: dict[tuple[str, ...], list[dict[str, str]]] = {}
     for key, row in rows.items():
-        found.setdefault(key[1:], []).append(row)
+        if key[0] in problems:
+            found.setdefault(key[1:], []).append(row)
     return {
         key: (
             math.exp(sum(math.log(error(r)) for r in some) / len(some)),
@@ -42,7 +49,7 @@ def means(rows: Rows) -> dict[tuple[str, ...], tuple[float, float, int]]:
             sum(bool(r["stopped"]) for r in some),
         )
         for key, some in found.items()
-        if len(some) == len(PROBLEMS)
+        if len(some) == len(problems)
     }
 
 
@@ -50,7 +57,7 @@ def page(rows: Rows, factor: str = "0.5") -> str:
     """Return the tables: errors of each problem at one factor, and means over all problems."""
     names = list(PROBLEMS)
     text = [f"| `cfl` {factor} | {' | '.join(names)} |\n", "| --- " * (len(names) + 1) + "|\n"]
-    for pair, scheme in dict.fromkeys(key[1:3] for key in rows):
+    for pair, scheme in dict.fromkeys(key[1:3] for key in rows if key[3] == factor):
         cells = []
         for name in names:
             row = rows.get((name, pair, scheme, factor))
@@ -62,7 +69,22 @@ def page(rows: Rows, factor: str = "0.5") -> str:
     )
     for key, (mean, seconds, stopped) in sorted(means(rows).items(), key=lambda item: item[1]):
         text.append(f"| {', '.join(key)} | {mean:.4f} | {seconds:.1f} | {stopped} |\n")
-    return "".join(text)
+    return "".join([*text, *_frames(rows)])
+
+
+def _frames(rows: Rows) -> Iterator[str]:
+    """Yield the table of the frames: what a case gets that says nothing, beside nodes in space."""
+    every = PROBLEMS | MORE
+    pairs = [key for key in means(rows, every) if key[2] == OWN]
+    yield f"\n| problem | {' | '.join(pair for pair, *_ in pairs)} |\n"
+    yield "| --- " * (len(pairs) + 1) + "|\n"
+    for name in every:
+        errors = (float(rows[(name, *pair)]["error"]) for pair in pairs)
+        yield f"| {name} | {' | '.join(f'{one:.2g}' for one in errors)} |\n"
+    for what, some in (("thirteen", PROBLEMS), ("all", every)):
+        of_some = means(rows, some)
+        yield f"| mean of {what} | {' | '.join(f'{of_some[p][0]:.4f}' for p in pairs)} |\n"
+        yield f"| seconds of {what} | {' | '.join(f'{of_some[p][1]:.0f}' for p in pairs)} |\n"
 
 
 def picture(rows: Rows, file: Path) -> None:
@@ -70,7 +92,10 @@ def picture(rows: Rows, file: Path) -> None:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    found, figure = means(rows), plt.figure(figsize=(9, 4.5), layout="constrained")
+    found, figure = (
+        {k: v for k, v in means(rows).items() if k[2] != OWN},
+        plt.figure(figsize=(9, 4.5), layout="constrained"),
+    )
     axes = figure.subplots()
     pairs = list(dict.fromkeys(key[0] for key in found))
     for pair, scheme in dict.fromkeys(key[:2] for key in found):
