@@ -138,6 +138,20 @@ def test_a_run_says_which_device_it_has(
     assert calls == ["use_device"] * 3  # Ready, and once more with the state.
 
 
+def test_a_run_goes_on_in_the_frames_that_it_had(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A device has bodies on nodes in space that the processor would have in the body."""
+    fake(monkeypatch)
+    short, path = {"run.end_time": 2e-3}, write(tmp_path, CASE.replace("5 m/s", "1 m/s"))
+    for first, then, frame in (("cuda", "cpu", "updated"), ("cpu", "cpu", "material")):
+        out = tmp_path / f"{first}_{then}"
+        run_case(load_case(path).with_(short), out, 1, pictures=False, device=first)
+        manifest = run_case(path, out, 1, pictures=False, device=then, resume=True)
+        assert manifest.status == "completed"
+        assert {body["frame"] for body in manifest.case["body"].values()} == {frame}
+
+
 def test_a_program_has_it_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     calls = fake(monkeypatch)
     simulation = Simulation(load_case(write(tmp_path)), threads=1, device="auto")

@@ -7,6 +7,7 @@ touches and the rest of the case go with them (docs/decisions/0084-a-frame-by-th
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
@@ -46,6 +47,21 @@ def choose_frames(case: Case, of_program: str = "") -> dict[str, str]:
             in_space = why.get(name, "it does not deform")
             table[name] = _with_frame(table[name], UPDATED if in_space else MATERIAL)
     return why
+
+
+def say_frames(case: Case, frames: Mapping[str, str]) -> None:
+    """Give entries a frame as if their tables said so, of those alone that leave it to us.
+
+    Args:
+        case: with tables of its own.
+        frames: by the names of entries; others stay as they are.
+    """
+    tables: list[dict[str, Any]] = [case.body, case.grains]
+    for table in tables:
+        for name in frames.keys() & table.keys():
+            if leaves_it(table[name]):
+                table[name] = _with_frame(table[name], frames[name])
+                table[name].model_fields_set.add("frame")
 
 
 def leaves_it(part: Body | Grains) -> bool:

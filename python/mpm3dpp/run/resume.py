@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -57,6 +58,22 @@ def go_on(
         if gone:
             notes.append(f"'{folder / name}' was gone: a new one begins at t = {before.time:.6g} s")
     return simulation, before, notes + before.notes(case)
+
+
+def as_it_was(folder: Path, case: Case) -> Case:
+    """Return a case with the frames that its run had, of bodies that leave them to us.
+
+    They follow from who makes the steps, too, and a run may go on by another.
+    """
+    for name in (CHECKPOINT, PREVIOUS):
+        with suppress(CaseError):
+            before = Checkpoint.of(folder / name).case
+            parts = {**before.get("body", {}), **before.get("grains", {})}
+            had = {one: part["frame"] for one, part in parts.items() if "frame" in part}
+            differ = {one: had.get(one, part.frame) for one, part in case.parts().items()}
+            same = all(case.parts()[one].frame == frame for one, frame in differ.items())
+            return case if same else case.in_frames(differ)
+    return case
 
 
 def _first_that_can(folder: Path, use: Callable[[Path], T]) -> tuple[T, str]:

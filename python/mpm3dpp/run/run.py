@@ -24,7 +24,7 @@ from .device import CPU
 from .lead import Mistake, follow, make_simulation, release
 from .recording import Recording
 from .report import summary_lines
-from .resume import go_on, has_checkpoint
+from .resume import as_it_was, go_on, has_checkpoint
 from .watch import Call, interval_of
 
 
@@ -142,12 +142,13 @@ def _run(
     before: Checkpoint | None = None
     notes: list[str] = []
     if resume:
+        case = as_it_was(folder, case)
         simulation, before, notes = go_on(
             folder, case, lambda: make_simulation(case, threads, device)
         )
     else:
         simulation = make_simulation(case, threads, device)
-    checkpoints = Checkpoints(folder, case, before)
+    checkpoints = Checkpoints(folder, simulation.case, before)
     with Notice() as notice:
         forget_last_run(folder, checkpoint=before is None)
         begin = simulation.step
