@@ -21,18 +21,27 @@ MPM_FLATTEN MPM_HD void apply_strength(const Model model, const MaterialView& ma
     const Sym<T, D> stress_before = group.read_stress(columns);
     // The old stress is read once, for the work takes the mean of both.
     Sym<T, D> stress = stress_before;
+    // In the body laws by rates are of Kirchhoff's stress J sigma. Those of Cauchy's stress have
+    // no potential, not for small strains about a stress that is there already either: vibrations
+    // about it, which nothing damps there, would take energy from it for ever (decision 86).
+    constexpr bool by_rates = requires { requires Model::by_rates; };
+    const bool of_kirchhoff = by_rates && settings.squeezed != nullptr;
+    if (of_kirchhoff)
+      stress = (kinematics.volume_change.before * kinematics.volume_change.per_volume) * stress;
     State state = group.template read_state<State>(columns.state, columns.stride);
     const State before = state;
     const T dissipated = model.update(motion, stress, state);
+    if (of_kirchhoff) stress = (T(1.0) / motion.J) * stress;
     group.write_state(columns.state, columns.stride, state);
 
+    const T J = of_kirchhoff ? T(1.0) : motion.J;  // by which waves are faster
     T speed(0.0), q(0.0);
     // By the model where it can be known: functions that a model does not have are not asked for.
     if constexpr (Model::eos != EosUse::never)
-      if (material.has_eos) speed = model.other_speed_squared(state, motion.J);
+      if (material.has_eos) speed = model.other_speed_squared(state, J);
     if constexpr (Model::eos != EosUse::must)
       if (!material.has_eos) {
-        speed = model.sound_speed(stress, state, motion.J);
+        speed = model.sound_speed(stress, state, J);
         if (viscosity) {
           const T damping = kinematics.volume_change.viscous_speed(settings, speed);
           q = kinematics.volume_change.viscous_pressure(settings, damping);

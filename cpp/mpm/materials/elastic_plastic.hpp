@@ -19,6 +19,7 @@ struct PlasticState {
 template <class Model>
 struct ElasticPlastic {
   static constexpr EosUse eos = EosUse::may;
+  static constexpr bool by_rates = true;
 
   Elastic elastic{};
 

@@ -30,7 +30,8 @@ class FoldedBodies {
       : domain_(domain),
         reach_(reach),
         folded_(domain.bodies.size(), false),
-        as_one_(domain.bodies.size(), false) {
+        as_one_(domain.bodies.size(), false),
+        in_body_(domain.surfaces.points.size()) {
     const auto& parts = domain.surfaces.parts;
     for (std::size_t k = 0; k < parts.size();) {
       std::size_t end = k;
@@ -45,15 +46,19 @@ class FoldedBodies {
   bool is_folded(int body) const { return folded_[static_cast<std::size_t>(body)]; }
   /// Does a body not deform?
   bool as_one(int body) const { return as_one_[static_cast<std::size_t>(body)]; }
+  /// Where a point of a body that deforms is in it [m].
+  const Vec<double, D>& in_body(std::uint32_t c) const { return in_body_[c]; }
   /// Are two points of a body so far from each other in it that they may touch?
   bool apart_in_body(std::uint32_t c, std::uint32_t q) const {
-    const Vec<double, D> way = place_in_body(c) - place_in_body(q);
+    const Vec<double, D> way = in_body_[c] - in_body_[q];
+    return dot(way, way) > square_apart();
+  }
+  double square_apart() const {
     const double far = apart_to_touch * domain_.grid.cell_size;
-    return dot(way, way) > far * far;
+    return far * far;
   }
 
  private:
-  Vec<double, D> place_in_body(std::uint32_t c) const { return mpm::place_in_body(domain_, c); }
   template <class F>
   static void for_each_point(std::span<const SurfacePart<D>> parts, F&& f) {
     for (const SurfacePart<D>& part : parts)
@@ -61,11 +66,12 @@ class FoldedBodies {
   }
 
   /// Is some point far from where the rigid motion that is nearest to all takes it?
-  bool is_bent(std::span<const SurfacePart<D>> parts) const {
+  bool is_bent(std::span<const SurfacePart<D>> parts) {
     Vec<double, D> X = Vec<double, D>::zero(), x = X;
     double count = 0.0;
     for_each_point(parts, [&](std::uint32_t c) {
-      X += place_in_body(c);
+      in_body_[c] = place_in_body(domain_, c);
+      X += in_body_[c];
       x += domain_.surfaces.places[c];
       count += 1.0;
     });
@@ -73,7 +79,7 @@ class FoldedBodies {
     x = (1.0 / count) * x;
     Mat<double, D> moments{};
     for_each_point(parts, [&](std::uint32_t c) {
-      const Vec<double, D> from = place_in_body(c) - X, to = domain_.surfaces.places[c] - x;
+      const Vec<double, D> from = in_body_[c] - X, to = domain_.surfaces.places[c] - x;
       for (int i = 0; i < D; ++i)
         for (int j = 0; j < D; ++j) moments[i][j] += to[i] * from[j];
     });
@@ -82,8 +88,7 @@ class FoldedBodies {
     const double far = 0.5 * (apart_to_touch * domain_.grid.cell_size - reach_);
     bool bent = false;
     for_each_point(parts, [&](std::uint32_t c) {
-      const Vec<double, D> off =
-          domain_.surfaces.places[c] - x - product(turn, place_in_body(c) - X);
+      const Vec<double, D> off = domain_.surfaces.places[c] - x - product(turn, in_body_[c] - X);
       bent = bent || !(dot(off, off) < far * far);
     });
     return bent;
@@ -111,7 +116,8 @@ class FoldedBodies {
 
   const Domain<D>& domain_;
   double reach_;
-  std::vector<bool> folded_, as_one_;  // by body
+  std::vector<bool> folded_, as_one_;    // by body
+  std::vector<Vec<double, D>> in_body_;  // of each point of bodies that deform [m]
 };
 
 }  // namespace mpm

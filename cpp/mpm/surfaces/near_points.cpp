@@ -68,12 +68,54 @@ double closing_speed(Domain<D>& domain) {
   return std::sqrt(largest_of_all(domain, farthest)) / surfaces.age_of_lists;
 }
 
+/// The least boxes, in their bodies, around the points of boxes in space: what is near in both
+/// has no point that may touch one of the other.
+template <int D>
+class BoxesInBodies {
+ public:
+  BoxesInBodies(const PointBoxes<D>& boxes, const FoldedBodies<D>& folded,
+                const std::vector<FaceOfBody>& face_of)
+      : least_(boxes.size()), square_(folded.square_apart()) {
+    for (std::uint32_t c = 0; c < face_of.size(); ++c) {
+      if (!folded.is_folded(face_of[c].body)) continue;
+      Least& least = least_[boxes.box_of(c)];
+      for (int a = 0; a < D; ++a) {
+        least.low[a] = std::min(least.low[a], folded.in_body(c)[a]);
+        least.high[a] = std::max(least.high[a], folded.in_body(c)[a]);
+      }
+    }
+  }
+
+  /// May points of two boxes of a folded body touch?
+  bool may_touch(std::uint32_t one, std::uint32_t other) const {
+    const Least &p = least_[one], &q = least_[other];
+    double sum = 0.0;
+    for (int a = 0; a < D; ++a) {
+      const double most = std::max(p.high[a] - q.low[a], q.high[a] - p.low[a]);
+      sum += most * most;
+    }
+    return sum > square_;
+  }
+
+ private:
+  struct Least {
+    Least() {
+      for (int a = 0; a < D; ++a) low[a] = std::numeric_limits<double>::infinity();
+      high = -1.0 * low;
+    }
+    Vec<double, D> low, high;  // [m]
+  };
+  std::vector<Least> least_;
+  double square_;
+};
+
 /// The boxes that points of one may feel: of other bodies, one after another, and of their own if
 /// that is folded.
 template <int D>
 class BoxesAround {
  public:
-  BoxesAround(const PointBoxes<D>& boxes, double reach) : boxes_(boxes), square_(reach * reach) {}
+  BoxesAround(const PointBoxes<D>& boxes, const BoxesInBodies<D>& in_bodies, double reach)
+      : boxes_(boxes), in_bodies_(in_bodies), square_(reach * reach) {}
 
   const std::vector<const PointBox<D>*>& of(std::uint32_t number, bool folds) {
     Known& known = known_[number % known_.size()];
@@ -86,12 +128,15 @@ class BoxesAround {
     for (int z = -layers; z <= layers; ++z)
       for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x)
-          boxes_.for_each_at({middle.index[0] + x, middle.index[1] + y, middle.index[2] + z},
-                             [&](const PointBox<D>& box) {
-                               if (box.face != unfelt && (folds || box.body != middle.body) &&
-                                   box.square_to(middle.low, middle.high) < square_)
-                                 found.push_back(&box);
-                             });
+          boxes_.for_each_at(
+              {middle.index[0] + x, middle.index[1] + y, middle.index[2] + z},
+              [&](const PointBox<D>& box) {
+                if (box.face != unfelt &&
+                    (box.body != middle.body ||
+                     (folds && in_bodies_.may_touch(number, boxes_.number_of(box)))) &&
+                    box.square_to(middle.low, middle.high) < square_)
+                  found.push_back(&box);
+              });
     std::ranges::sort(found, [](const PointBox<D>* p, const PointBox<D>* q) {
       return std::tie(p->body, p->face, p->first) < std::tie(q->body, q->face, q->first);
     });
@@ -100,6 +145,7 @@ class BoxesAround {
 
  private:
   const PointBoxes<D>& boxes_;
+  const BoxesInBodies<D>& in_bodies_;
   double square_;
   // Of the last few, as points go to and fro between them.
   struct Known {
@@ -112,11 +158,11 @@ class BoxesAround {
 /// The points that those of a part may feel, by body and face.
 template <int D>
 void find_near(const Domain<D>& domain, const PointBoxes<D>& boxes, const FoldedBodies<D>& folded,
-               SurfacePart<D>& part) {
+               const BoxesInBodies<D>& in_bodies, SurfacePart<D>& part) {
   const Surfaces<D>& surfaces = domain.surfaces;
   const double reach = reach_of_lists(surfaces), square = reach * reach;
   const bool folds = folded.is_folded(part.body);
-  BoxesAround<D> around(boxes, reach);
+  BoxesAround<D> around(boxes, in_bodies, reach);
   part.near.clear();
   part.near_of.clear();
   for (std::uint32_t c = part.first_point; c < part.first_point + part.point_count; ++c) {
@@ -196,7 +242,9 @@ void make_near_lists(Domain<D>& domain) {
   const double reach = reach_of_lists(surfaces);
   const PointBoxes<D> boxes(domain.grid.origin, reach, surfaces.places, face_of);
   const FoldedBodies<D> folded(domain, reach);
-  for_each_own_part(domain, [&](SurfacePart<D>& part) { find_near(domain, boxes, folded, part); });
+  const BoxesInBodies<D> in_bodies(boxes, folded, face_of);
+  for_each_own_part(
+      domain, [&](SurfacePart<D>& part) { find_near(domain, boxes, folded, in_bodies, part); });
   surfaces.awake_until = 0.0;
 }
 

@@ -77,7 +77,11 @@ class PointBoxes {
     }
   }
 
+  std::size_t size() const { return boxes_.size(); }
   std::uint32_t box_of(std::uint32_t point) const { return box_of_[point]; }
+  std::uint32_t number_of(const PointBox<D>& box) const {
+    return static_cast<std::uint32_t>(&box - boxes_.data());
+  }
   const PointBox<D>& operator[](std::uint32_t box) const { return boxes_[box]; }
   /// f(box) for those of all faces at an index.
   template <class F>

@@ -26,6 +26,7 @@ struct Elastic {
       "Truesdell & Noll 1965, sec. 99; update after Hughes & Winget 1980";
 
   static constexpr EosUse eos = EosUse::may;
+  static constexpr bool by_rates = true;
 
   double E{}, nu{}, density{};
   double lambda{}, G{};
