@@ -134,7 +134,7 @@ def test_the_step_follows_the_frame() -> None:
         ),
         (  # Waves have 36.7 m/s.
             {"block": "velocity = [8, 0]", "bodies": OTHER.format("soft", "auto")},
-            "it meets soft at 0.22 of the speed of its waves",
+            "it meets soft at 0.22 of the speed of its waves, more than 0.2",
         ),
         (
             {"block": "velocity = [0, -8]", "grid": box('y_min = "contact"')},
@@ -146,6 +146,30 @@ def test_in_space(given, why) -> None:
     case = case_of(**given)
     assert case.body["block"].frame == "updated"
     assert why in case.why_in_space["block"]
+
+
+def test_what_yields_is_in_space_at_half_the_speed() -> None:
+    strength = "strength = { j2 = { E = 1e6, nu = 0.3, Y0 = 1e4, H = 0 } }"
+    text = TEXT.replace('strength = { elastic = { E = "1 MPa", nu = 0.3 } }', strength)
+    floor = box('y_min = "contact"')
+    for speed, frame in ((3.5, "material"), (4.0, "updated")):
+        moving = text.replace('frame = "auto"', f"velocity = [0, -{speed}]")
+        assert (
+            Case.from_text(moving.replace("[run]", f"{floor}\n[run]", 1)).body["block"].frame
+            == frame
+        )
+
+
+def test_a_restitution_without_surfaces_says_why() -> None:
+    with pytest.raises(CaseError, match=r'there is none, as frame = "material" does not go with'):
+        case_of(contact="restitution = 0.5", grid=box('x_min = "slip"'))
+
+
+def test_a_pair_with_a_restitution_alone_is_told() -> None:
+    bodies = OTHER.format("soft", "auto")
+    pair = '[[contact.pair]]\nbodies = ["block", "soft"]\nrestitution = 0.7\n'
+    case = case_of(bodies=bodies + pair)
+    assert "restitution: 0.7 between block and soft" in echo(case, build(case))
 
 
 def test_what_flows_says_by_which_model() -> None:

@@ -4,6 +4,12 @@
 
 namespace mpm {
 
+/// A stress whose deviator is so many times as large.
+template <class T, int D>
+MPM_HD Sym<T, D> with_deviator(const Sym<T, D>& stress, T factor) {
+  return factor * stress + Sym<T, D>::isotropic((T(1.0) - factor) * T(1.0 / 3.0) * trace(stress));
+}
+
 /// The model is a copy, which no store to a column can change. Which part is the last is decided
 /// for the block, not in lanes: the last part of the way writes, the others leave their values in
 /// the block, which stays in the first-level cache (decision 0009).
@@ -21,20 +27,23 @@ MPM_FLATTEN MPM_HD void apply_strength(const Model model, const MaterialView& ma
     const Sym<T, D> stress_before = group.read_stress(columns);
     // The old stress is read once, for the work takes the mean of both.
     Sym<T, D> stress = stress_before;
-    // In the body laws by rates are of Kirchhoff's stress J sigma. Those of Cauchy's stress have
-    // no potential, not for small strains about a stress that is there already either: vibrations
-    // about it, which nothing damps there, would take energy from it for ever (decision 86).
+    // In the body laws by rates are of Kirchhoff's stress J sigma, but for its mean, which is a
+    // function of J. Those of Cauchy's stress have no potential, not for small strains about a
+    // stress that is there already either: vibrations about it, which nothing damps there, would
+    // take energy from it for ever (decision 86).
     constexpr bool by_rates = requires { requires Model::by_rates; };
     const bool of_kirchhoff = by_rates && settings.squeezed != nullptr;
     if (of_kirchhoff)
-      stress = (kinematics.volume_change.before * kinematics.volume_change.per_volume) * stress;
+      stress = with_deviator(stress,
+                             kinematics.volume_change.before * kinematics.volume_change.per_volume);
     State state = group.template read_state<State>(columns.state, columns.stride);
     const State before = state;
     const T dissipated = model.update(motion, stress, state);
-    if (of_kirchhoff) stress = (T(1.0) / motion.J) * stress;
+    if (of_kirchhoff) stress = with_deviator(stress, T(1.0) / motion.J);
     group.write_state(columns.state, columns.stride, state);
 
-    const T J = of_kirchhoff ? T(1.0) : motion.J;  // by which waves are faster
+    // By which waves are faster: those of shape are not.
+    const T J = of_kirchhoff ? max(T(1.0), motion.J) : motion.J;
     T speed(0.0), q(0.0);
     // By the model where it can be known: functions that a model does not have are not asked for.
     if constexpr (Model::eos != EosUse::never)

@@ -228,7 +228,7 @@ struct KeptNodes {
     for (auto& [i, node] : body.nodes) u[i] += step.dt * node.v;
   }
 
-  /// x_p, F_p, (M1), and the stress by L dt = (F_p - F_p before) (F_p before)^-1, (M4).
+  /// x_p, F_p, (M1), and J dev sigma by L dt = (F_p - F_p before) (F_p before)^-1, (M4).
   void update() {
     for (std::size_t k = 0; k < F.size(); ++k) {
       Particle<D>& p = body.particles[k];
@@ -244,7 +244,13 @@ struct KeptNodes {
         for (int b = 0; b < D; ++b) change[a][b] = now[a][b] - F[k][a][b];
       StrainIncrement<double, D> motion{};
       motion.gradient = change * inverse_of(F[k]);
+      const auto deviator_by = [&](double factor) {
+        const double mean = trace(p.sigma) / 3.0;
+        p.sigma = factor * p.sigma + Sym<double, D>::isotropic((1.0 - factor) * mean);
+      };
+      deviator_by(determinant(F[k]));
       body.material.update(motion, p.sigma);
+      deviator_by(1.0 / determinant(now));
       p.V *= determinant(now) / determinant(F[k]);
       F[k] = now;
     }

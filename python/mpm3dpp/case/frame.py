@@ -49,7 +49,9 @@ def check_frames(case: Case) -> Iterator[PydanticCustomError]:
     path = _restitution(case) or (("run", "short_wave_damping") if damped else ())
     if path and not own:
         rule = f'is for bodies with frame = "{MATERIAL}", and there is none'
-        yield violation(rule, f"give it to bodies, or leave {path[-1]} out", path=path)
+        why = next(filter(None, case.why_in_space.values()), "")
+        remedy = f"leave {path[-1]} out" if why else f"give it to bodies, or leave {path[-1]} out"
+        yield violation(f"{rule}, as {why}" if why else rule, remedy, path=path)
     if own and damped and case.grid.basis == "gimp":
         rule = 'does not go with grid.basis = "gimp", which has no affine part of a velocity'
         remedy = 'give grid.basis = "quadratic_bspline", or leave it out'

@@ -16,6 +16,7 @@ from mpm3dpp.case.grid import GridCoarsening
 from mpm3dpp.case.initial import GEOSTATIC, Initial
 from mpm3dpp.case.initial_fields import STRESS
 from mpm3dpp.case.loads import KINDS
+from mpm3dpp.case.parts import ContactPair
 from mpm3dpp.plots.labels import scaled
 
 Quantity = float | TimeFunction | Expression
@@ -159,9 +160,18 @@ def condition_lines(case: Case) -> list[str]:
             lines.append(f"damping of {', '.join(parts)}: {' and '.join(words)}")
     for pair in case.contact.pair if case.contact_enabled else ():
         names = pair.bodies or [f"all {name}" for name in pair.materials or ()]
-        kind = "bonded:" if pair.bonded else f"friction: {pair.friction:g} between"
-        lines.append(f"{kind} {' and '.join(names)}")
+        lines.append(f"{_pair_in_words(pair)} {' and '.join(names)}")
     return lines
+
+
+def _pair_in_words(pair: ContactPair) -> str:
+    """Return `bonded:`, or `friction: 0.3, restitution: 0.5 between`."""
+    given = [
+        f"{name}: {value:g}"
+        for name, value in (("friction", pair.friction), ("restitution", pair.restitution))
+        if value is not None
+    ]
+    return "bonded:" if pair.bonded else f"{', '.join(given)} between"
 
 
 def _initial_in_words(initial: Initial | None) -> str:
