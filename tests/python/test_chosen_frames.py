@@ -6,6 +6,7 @@ from __future__ import annotations
 import pytest
 
 from mpm3dpp import Case, CaseError
+from mpm3dpp.case.choose_frames import all_in_space
 from mpm3dpp.fill.build import build
 from mpm3dpp.run.summary import echo
 
@@ -91,12 +92,12 @@ def test_it_is_the_default() -> None:
 def test_a_device_has_them_in_space() -> None:
     """Of those alone that are left to us; the case that was given stays as it is."""
     case = case_of(bodies=OTHER.format("water", "auto"), contact="enabled = false")
-    there = case.all_in_space("a device makes the steps")
+    there = all_in_space(case, "a device makes the steps")
     assert case.body["block"].frame == "material"
     assert there.body["block"].frame == "updated" and there.run.cfl == 0.5
     assert there.why_in_space == dict.fromkeys(("block", "water"), "a device makes the steps")
     said = case.with_({"body.block.frame": "material"})
-    assert said.all_in_space("a device makes the steps").body["block"].frame == "material"
+    assert all_in_space(said, "a device makes the steps").body["block"].frame == "material"
 
 
 def test_a_mistake_is_told_where_it_is_looked_for() -> None:

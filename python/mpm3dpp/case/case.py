@@ -28,7 +28,7 @@ from .box import CONTACT
 from .changes import paths_of, with_changes
 from .checks import check_case
 from .choices import with_choices, with_picture
-from .choose_frames import choose_frames, say_frames
+from .choose_frames import choose_frames
 from .content import PRESETS, content_of, hash_of, with_preset
 from .detonation import Detonation
 from .frame import all_in_bodies
@@ -108,27 +108,6 @@ class Case(CaseModel):
         Of those alone whose frame is "auto" and that deform.
         """
         return dict(self._why_in_space)
-
-    def all_in_space(self, why: str) -> Case:
-        """Return this case with the nodes of all bodies in space that leave that to us.
-
-        Args:
-            why: of the program that runs it, as `why_in_space` tells it.
-        """
-        case = self._with_own_parts()
-        case._in_space = why
-        case.complete_and_check()
-        return case
-
-    def in_frames(self, frames: Mapping[str, str]) -> Case:
-        """Return this case with frames of bodies that leave that to us, by their names."""
-        case = self._with_own_parts()
-        say_frames(case, frames)
-        case.complete_and_check()
-        return case
-
-    def _with_own_parts(self) -> Case:
-        return self.model_copy(update={"body": dict(self.body), "grains": dict(self.grains)})
 
     @property
     def text(self) -> str:

@@ -49,19 +49,39 @@ def choose_frames(case: Case, of_program: str = "") -> dict[str, str]:
     return why
 
 
-def say_frames(case: Case, frames: Mapping[str, str]) -> None:
-    """Give entries a frame as if their tables said so, of those alone that leave it to us.
+def all_in_space(case: Case, why: str) -> Case:
+    """Return a case with the nodes of all bodies in space that leave that to us.
 
     Args:
-        case: with tables of its own.
+        case: stays as it is.
+        why: of the program that runs it, as `Case.why_in_space` tells it.
+    """
+    case = _with_own_parts(case)
+    case._in_space = why
+    case.complete_and_check()
+    return case
+
+
+def in_frames(case: Case, frames: Mapping[str, str]) -> Case:
+    """Return a case with frames as if its tables said so, of those alone that leave it to us.
+
+    Args:
+        case: stays as it is.
         frames: by the names of entries; others stay as they are.
     """
+    case = _with_own_parts(case)
     tables: list[dict[str, Any]] = [case.body, case.grains]
     for table in tables:
         for name in frames.keys() & table.keys():
             if leaves_it(table[name]):
                 table[name] = _with_frame(table[name], frames[name])
                 table[name].model_fields_set.add("frame")
+    case.complete_and_check()
+    return case
+
+
+def _with_own_parts(case: Case) -> Case:
+    return case.model_copy(update={"body": dict(case.body), "grains": dict(case.grains)})
 
 
 def leaves_it(part: Body | Grains) -> bool:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from mpm3dpp.base.errors import CaseError, show
 from mpm3dpp.case.case import Case
+from mpm3dpp.case.choose_frames import in_frames
 from mpm3dpp.io.checkpoint import ANEW, CHECKPOINT, PREVIOUS, DamagedError, restore_checkpoint
 from mpm3dpp.io.stored_manifest import manifest_data
 from mpm3dpp.io.vtkhdf import RESULTS
@@ -72,7 +73,7 @@ def as_it_was(folder: Path, case: Case) -> Case:
             had = {one: part["frame"] for one, part in parts.items() if "frame" in part}
             differ = {one: had.get(one, part.frame) for one, part in case.parts().items()}
             same = all(case.parts()[one].frame == frame for one, frame in differ.items())
-            return case if same else case.in_frames(differ)
+            return case if same else in_frames(case, differ)
     return case
 
 

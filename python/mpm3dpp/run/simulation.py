@@ -15,6 +15,7 @@ from mpm3dpp.base.errors import CaseError, RunError, nearest
 from mpm3dpp.base.machine import thread_count
 from mpm3dpp.base.ours import refuse_others
 from mpm3dpp.case.case import Case
+from mpm3dpp.case.choose_frames import all_in_space
 from mpm3dpp.fill.advisories import notes, with_overlap
 from mpm3dpp.fill.build import build, warnings
 from mpm3dpp.fill.point_warnings import point_warnings
@@ -82,7 +83,7 @@ class Simulation:
             raise CaseError("must be a Case", remedy, key="case", value=case)
         self._wanted = check_device(device, alone=world is None)
         if self._wanted == CUDA:
-            case = case.all_in_space("a device makes the steps")
+            case = all_in_space(case, "a device makes the steps")
         filled = build(case, world)
         self.case, self._world = case, world
         cores = world.cores_of_rank() if world else None
