@@ -4,6 +4,13 @@
 
 namespace mpm {
 
+/// In the body laws by rates are of Kirchhoff's stress J sigma, but for its mean, which is a
+/// function of J. Those of Cauchy's stress have no potential, not for small strains about a stress
+/// that is there already either: vibrations about it, which nothing damps there, would take energy
+/// from it for ever (decision 86).
+template <class Model>
+inline constexpr bool by_rates = requires { requires Model::by_rates; };
+
 /// A stress whose deviator is so many times as large.
 template <class T, int D>
 MPM_HD Sym<T, D> with_deviator(const Sym<T, D>& stress, T factor) {
@@ -27,22 +34,15 @@ MPM_FLATTEN MPM_HD void apply_strength(const Model model, const MaterialView& ma
     const Sym<T, D> stress_before = group.read_stress(columns);
     // The old stress is read once, for the work takes the mean of both.
     Sym<T, D> stress = stress_before;
-    // In the body laws by rates are of Kirchhoff's stress J sigma, but for its mean, which is a
-    // function of J. Those of Cauchy's stress have no potential, not for small strains about a
-    // stress that is there already either: vibrations about it, which nothing damps there, would
-    // take energy from it for ever (decision 86).
-    constexpr bool by_rates = requires { requires Model::by_rates; };
-    const bool of_kirchhoff = by_rates && settings.squeezed != nullptr;
-    if (of_kirchhoff)
-      stress = with_deviator(stress,
-                             kinematics.volume_change.before * kinematics.volume_change.per_volume);
+    const bool of_kirchhoff = by_rates<Model> && settings.squeezed != nullptr;
     State state = group.template read_state<State>(columns.state, columns.stride);
     const State before = state;
+    if (of_kirchhoff) stress = with_deviator(stress, kinematics.volume_change.J_before());
     const T dissipated = model.update(motion, stress, state);
     if (of_kirchhoff) stress = with_deviator(stress, T(1.0) / motion.J);
     group.write_state(columns.state, columns.stride, state);
 
-    // By which waves are faster: those of shape are not.
+    // Waves of shape are no slower for a smaller volume.
     const T J = of_kirchhoff ? max(T(1.0), motion.J) : motion.J;
     T speed(0.0), q(0.0);
     // By the model where it can be known: functions that a model does not have are not asked for.

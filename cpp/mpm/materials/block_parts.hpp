@@ -139,6 +139,8 @@ struct VolumeChange {
         per_volume(T(density) / mass_),
         J(after_ * T(density) / mass_) {}
 
+  MPM_HD T J_before() const { return before * per_volume; }
+
   /// Work of a mean stress on the change of volume [J].
   MPM_HD T work(T mean_stress) const { return mean_stress * (after - before); }
 
