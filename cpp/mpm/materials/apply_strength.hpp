@@ -17,6 +17,24 @@ MPM_HD Sym<T, D> with_deviator(const Sym<T, D>& stress, T factor) {
   return factor * stress + Sym<T, D>::isotropic((T(1.0) - factor) * T(1.0 / 3.0) * trace(stress));
 }
 
+/// Stress and state of the end of the step by a model; returns what it dissipates.
+template <class Model, class T, int D>
+MPM_HD T update_by(const Model& model, const StressSettings& settings,
+                   const StepKinematics<T, D>& kinematics, Sym<T, D>& stress,
+                   typename Model::template State<T, D>& state) {
+  const bool of_kirchhoff = by_rates<Model> && settings.squeezed != nullptr;
+  if (of_kirchhoff) stress = with_deviator(stress, kinematics.volume_change.J_before());
+  const T dissipated = model.update(kinematics.motion, stress, state);
+  if (of_kirchhoff) stress = with_deviator(stress, T(1.0) / kinematics.motion.J);
+  return dissipated;
+}
+
+/// By what volume waves are faster: those of shape are no slower for a smaller one.
+template <class Model, class T>
+MPM_HD T volume_of_waves(const StressSettings& settings, T J) {
+  return by_rates<Model> && settings.squeezed != nullptr ? max(T(1.0), J) : J;
+}
+
 /// The model is a copy, which no store to a column can change. Which part is the last is decided
 /// for the block, not in lanes: the last part of the way writes, the others leave their values in
 /// the block, which stays in the first-level cache (decision 0009).
@@ -34,16 +52,11 @@ MPM_FLATTEN MPM_HD void apply_strength(const Model model, const MaterialView& ma
     const Sym<T, D> stress_before = group.read_stress(columns);
     // The old stress is read once, for the work takes the mean of both.
     Sym<T, D> stress = stress_before;
-    const bool of_kirchhoff = by_rates<Model> && settings.squeezed != nullptr;
     State state = group.template read_state<State>(columns.state, columns.stride);
     const State before = state;
-    if (of_kirchhoff) stress = with_deviator(stress, kinematics.volume_change.J_before());
-    const T dissipated = model.update(motion, stress, state);
-    if (of_kirchhoff) stress = with_deviator(stress, T(1.0) / motion.J);
+    const T dissipated = update_by(model, settings, kinematics, stress, state);
     group.write_state(columns.state, columns.stride, state);
-
-    // Waves of shape are no slower for a smaller volume.
-    const T J = of_kirchhoff ? max(T(1.0), motion.J) : motion.J;
+    const T J = volume_of_waves<Model>(settings, motion.J);
     T speed(0.0), q(0.0);
     // By the model where it can be known: functions that a model does not have are not asked for.
     if constexpr (Model::eos != EosUse::never)
