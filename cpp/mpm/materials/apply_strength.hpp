@@ -9,7 +9,14 @@ namespace mpm {
 /// that is there already either: vibrations about it, which nothing damps there, would take energy
 /// from it for ever (decision 86).
 template <class Model>
-inline constexpr bool by_rates = requires { requires Model::by_rates; };
+MPM_HD bool of_kirchhoff([[maybe_unused]] const StressSettings& settings) {
+#if defined(__CUDA_ARCH__)
+  return false;  // A device knows no bodies on nodes of their own.
+#else
+  constexpr bool by_rates = requires { requires Model::by_rates; };
+  return by_rates && settings.squeezed != nullptr;
+#endif
+}
 
 /// A stress whose deviator is so many times as large.
 template <class T, int D>
@@ -22,17 +29,17 @@ template <class Model, class T, int D>
 MPM_HD T update_by(const Model& model, const StressSettings& settings,
                    const StepKinematics<T, D>& kinematics, Sym<T, D>& stress,
                    typename Model::template State<T, D>& state) {
-  const bool of_kirchhoff = by_rates<Model> && settings.squeezed != nullptr;
-  if (of_kirchhoff) stress = with_deviator(stress, kinematics.volume_change.J_before());
+  const bool scaled = of_kirchhoff<Model>(settings);
+  if (scaled) stress = with_deviator(stress, kinematics.volume_change.J_before());
   const T dissipated = model.update(kinematics.motion, stress, state);
-  if (of_kirchhoff) stress = with_deviator(stress, T(1.0) / kinematics.motion.J);
+  if (scaled) stress = with_deviator(stress, T(1.0) / kinematics.motion.J);
   return dissipated;
 }
 
 /// By what volume waves are faster: those of shape are no slower for a smaller one.
 template <class Model, class T>
 MPM_HD T volume_of_waves(const StressSettings& settings, T J) {
-  return by_rates<Model> && settings.squeezed != nullptr ? max(T(1.0), J) : J;
+  return of_kirchhoff<Model>(settings) ? max(T(1.0), J) : J;
 }
 
 /// The model is a copy, which no store to a column can change. Which part is the last is decided

@@ -118,7 +118,7 @@ class Bench:
     flies: bool = True
     tables: Callable[[int, Array], Tables] | None = None
 
-    def particles(self, size: int, frame: str | None = UPDATED) -> int:
+    def particles(self, size: int, frame: str | None = None) -> int:
         """Return the number of particles of all bodies; of grains about how many."""
         if self.bodies == 0:
             finer = particles_along(frame or UPDATED, cells_a_radius=1.0) / PER_AXIS

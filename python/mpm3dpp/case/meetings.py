@@ -14,15 +14,13 @@ from .box import CONTACT, FACES, HOLDING
 if TYPE_CHECKING:
     from .case import Case
 
-_ELASTIC = ("elastic", "neo_hookean")
 FASTEST = 0.2
 """Speed of meeting over that of waves above which surfaces of bodies on nodes of their own go
 through each other: points lie as deep as their springs reach (docs/decisions/0076-deep-contact.md).
 """
-
-
-FASTEST_OF_METALS = 0.1
+FASTEST_IF_IT_YIELDS = 0.1
 """The same of what yields, where no frame is said: it flows far, and into what it meets."""
+_ELASTIC = ("elastic", "neo_hookean")
 
 
 def velocity_at_start(case: Case, name: str) -> NDArray[np.float64] | None:
@@ -48,7 +46,7 @@ def meets_too_fast(case: Case, name: str) -> str:
         return ""
     material = case.material[case.parts()[name].material]
     waves, yields = material.sound_speed(), material.strength.model not in _ELASTIC
-    most = FASTEST_OF_METALS if yields else FASTEST
+    most = FASTEST_IF_IT_YIELDS if yields else FASTEST
     for other, speed in _speeds(case, name, own):
         if speed > most * waves:
             return (

@@ -25,7 +25,7 @@ _WITH_EDGES = 1.15  # of a rank's part of the core's memory
 _PROGRAM_BYTES = 62 << 20
 """Python and the libraries of a run, and what its start leaves [bytes]: measured with CPython 3.11,
 numpy 2.4 and h5py 3.16 on Linux."""
-_SEARCH_BYTES = 57 << 20
+_SEARCH_BYTES = 57_000_000
 """What finds the particles of contact points [bytes]: measured likewise, with scipy 1.17."""
 
 

@@ -11,9 +11,9 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 from . import report
+from .benchmark_rows import MORE
 from .measures import Measured, timed
 from .problems import PROBLEMS
-from .told import MORE
 
 PAIRS = (
     "linear", "gimp", "gimp+xpic=4", "quadratic_bspline", "quadratic_bspline+apic",

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import matplotlib
 
+from .benchmark_rows import MORE
 from .problems import PROBLEMS
-from .told import MORE
 
 OWN = "its own"
 """The factor of a pair that has one, such as "auto"."""

@@ -13,7 +13,7 @@ from ..numerics import AUTO, Numerics
 from ..scene import Failed
 from .measures import Measured, Watched
 
-TOLD = {
+BENCHMARKS = {
     "hits": ("three_hits", "6 cells", "energy left over that of the fall"),
     "drop": ("bouncing_ball", "e = 1", "speed after the hit over that before"),
     "roll": ("rolls_down", "5 cells a radius", "speed [m/s]"),
@@ -56,8 +56,8 @@ velocity = [{ expression = "x / abs(x)" }, 0]
 """
 
 
-def _told(name: str) -> Callable[[str, str], Measured]:
-    benchmark, variant, title = TOLD[name]
+def _of_benchmark(name: str) -> Callable[[str, str], Measured]:
+    benchmark, variant, title = BENCHMARKS[name]
 
     def problem(numerics: str, _scheme: str) -> Measured:
         def frame(case: Case) -> Case:
@@ -92,7 +92,7 @@ def torn(name: str, scheme: str) -> Measured:
 
 
 MORE: dict[str, Callable[[str, str], Measured]] = {
-    **{name: _told(name) for name in TOLD},
+    **{name: _of_benchmark(name) for name in BENCHMARKS},
     "splash": splash,
     "torn": torn,
 }
