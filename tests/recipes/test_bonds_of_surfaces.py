@@ -137,7 +137,7 @@ def test_another_world_is_the_same(dimension: int) -> None:
     check_worlds(bonded_blocks(dimension), 150 if dimension == 2 else 60, "", meet=False)
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_the_same_bits(dimension: int, tmp_path: Path) -> None:
     """With any number of threads, stages fused or not, and after a restart."""
     check_same_bits(bonded_blocks(dimension), tmp_path)

@@ -57,6 +57,6 @@ def test_what_is_levelled_falls_as_it_slides_and_ends_in_gaps(dimension: int) ->
     assert 0.1 * begun < left < 0.9 * begun
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_same_bits(dimension: int, tmp_path: Path) -> None:
     check_same_bits(stacks(dimension), tmp_path)

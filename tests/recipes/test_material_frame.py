@@ -238,7 +238,12 @@ def test_another_world_is_the_same(dimension: int, averages: bool) -> None:
 
 @pytest.mark.parametrize(
     ("dimension", "averages"),
-    [(2, False), (2, True), (3, False), pytest.param(3, True, marks=pytest.mark.slow)],
+    [
+        (2, False),
+        (2, True),
+        pytest.param(3, False, marks=pytest.mark.slow),
+        pytest.param(3, True, marks=pytest.mark.slow),
+    ],
 )
 def test_the_same_bits(dimension: int, averages: bool, tmp_path: Any) -> None:
     """With any number of threads, stages fused or not, and after a restart."""

@@ -319,7 +319,7 @@ def test_another_world_is_the_same(dimension: int, of_soft: str) -> None:
     ("dimension", "of_soft"),
     [
         (2, ""),
-        (2, AVERAGES),
+        pytest.param(2, AVERAGES, marks=pytest.mark.slow),
         pytest.param(3, "", marks=pytest.mark.slow),
         pytest.param(3, AVERAGES, marks=pytest.mark.slow),
     ],

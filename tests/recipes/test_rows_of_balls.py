@@ -118,6 +118,7 @@ def test_a_spinning_ball_is_dropped() -> None:
     assert 0.98 < up / fall < 1.0
 
 
+@pytest.mark.slow
 def test_a_ball_that_turns_about_its_normal_is_slowed_down() -> None:
     """Pressed on a floor by a circle of a quarter of its radius, 1.5 cells: 3 pi mu N a / 16."""
     mu, circle, spin = 0.3, 0.25 * RADIUS, 30.0

@@ -77,8 +77,10 @@ def state(simulation: Simulation) -> list[bytes]:
     return [np.array(one).tobytes() for one in found]
 
 
-@pytest.mark.parametrize("restitution", [1.0, 0.5])
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize(
+    ("dimension", "restitution"),
+    [(2, 1.0), (2, 0.5), pytest.param(3, 1.0, marks=pytest.mark.slow), (3, 0.5)],
+)
 def test_grains(dimension: int, restitution: float) -> None:
     case, steps = grains(dimension, restitution), 300 if dimension == 2 else 80
     one, found = after(case, steps, 1)

@@ -99,7 +99,12 @@ def momentum(rows: dict[str, np.ndarray], dimension: int) -> np.ndarray:
 
 @pytest.mark.parametrize(
     ("dimension", "basis"),
-    [(2, "quadratic_bspline"), (2, "gimp"), (2, "linear"), (3, "quadratic_bspline")],
+    [
+        (2, "quadratic_bspline"),
+        (2, "gimp"),
+        (2, "linear"),
+        pytest.param(3, "quadratic_bspline", marks=pytest.mark.slow),
+    ],
 )
 def test_a_block_slides_and_comes_to_rest(tmp_path: Path, dimension: int, basis: str) -> None:
     """It slows down by mu g and stops after v / (mu g), 0.34 s: 2.5 % of the speed at the start.
