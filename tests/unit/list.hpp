@@ -59,6 +59,7 @@
   X(loops) \
   X(fuse) \
   X(kept_nodes) \
+  X(copies_of_nodes) \
   X(surfaces) \
   X(stages) \
   X(rows) \

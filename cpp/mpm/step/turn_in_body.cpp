@@ -77,22 +77,19 @@ TurningSums sums_of_nodes(Domain<D>& domain, std::size_t p, const Vector3& about
   return sums;
 }
 
-/// Forces m (g + alpha x r) to the nodes of a patch, r from a centre.
+/// Forces m (g + alpha x r) to the nodes of a patch, r from a centre. Patches that hold a node get
+/// the same bits, as places are those of its index in the grid: copies of a node that differ by
+/// rounding would drift apart, d'' = alpha x d, and tear the body after some ten thousand steps.
 template <int D>
 void add_forces(Domain<D>& domain, std::size_t p, const Vector3& centre, const Vector3& straight,
                 const Vector3& alpha) {
   const Patch<D>& patch = domain.grid.patches[p];
   const NodeBlock<D> block = domain.grid.block(p);
-  const Vector3 corner = place_of(domain.grid, patch, patch.shape.low) - centre;
-  Index<D> at{};
   for (int n = 0; n < block.count; ++n) {
     double* const numbers = block.records[n];
-    Vector3 r = corner;
-    for (int a = 0; a < D; ++a)
-      r[a] += domain.grid.cell_size * at[static_cast<std::size_t>(a)] + block.displacements[n][a];
+    const Vector3 r = place_of_kept(domain.grid, patch, block, n) - centre;
     const Vector3 g = straight + cross(alpha, r);
     for (int a = 0; a < D; ++a) numbers[force_at + a] += numbers[mass_at] * g[a];
-    for (std::size_t a = 0; a < D && ++at[a] == patch.shape.nodes[a]; ++a) at[a] = 0;
   }
 }
 
