@@ -12,13 +12,16 @@ namespace mpm {
 
 struct KeptSpin {
   int body = 0;
+  unsigned held = 0;                   // axes along which walls hold nodes of it, a bit each
   bool begun = false;                  // are the others known?
+  bool shifted = false;                // have nodes gone by (M5) since, which L knows nothing of?
   Vector3 momentum = Vector3::zero();  // L about the centre, in the middle of the last step [N m s]
   Vector3 of_nodes = Vector3::zero();  // what the nodes have [N m s]
   Vector3 spin = Vector3::zero();      // [rad/s]
   Vector3 centre = Vector3::zero();    // of mass, at the start of the step [m]
   Vector3 velocity = Vector3::zero();  // of it, in the middle of the step [m/s]
-  double mass = 0.0, excess = 0.0;     // of the body [kg]; D [kg m^2]
+  Vector3 acceleration = Vector3::zero();  // of it, at the start of the step [m/s^2]
+  double mass = 0.0, excess = 0.0;         // of the body [kg]; D [kg m^2]
 };
 
 /// One that other ranks have a part of.
@@ -33,6 +36,12 @@ inline double kinetic_excess(const std::vector<KeptSpin>& all) {
   double sum = 0.0;
   for (const KeptSpin& one : all) sum += 0.5 * one.excess * dot(one.spin, one.spin);
   return sum;
+}
+
+/// Of a body's centre [m/s^2], 0 along axes on which walls hold it.
+inline Vector3 acceleration_of(const std::vector<KeptSpin>& all, int body) {
+  const auto at = std::ranges::lower_bound(all, body, {}, &KeptSpin::body);
+  return at != all.end() && at->body == body ? at->acceleration : Vector3::zero();
 }
 
 /// What the nodes of a body have more than the body, for each of their mass.

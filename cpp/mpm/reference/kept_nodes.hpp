@@ -19,7 +19,7 @@ struct KeptNodes {
   std::vector<Load<D>> loads{};            // pieces as they were at the start
   Vector3 L = Vector3::zero(), spin = L;   // of the body about its centre
   bool begun = false;
-  bool turns = true;            // else walls hold it, so that it is a part of what turns
+  unsigned held = 0;            // axes along which walls hold nodes of it, a bit each
   double kinetic_excess = 0.0;  // of the nodes [J]
 
   /// m_i = sum m_p N_ip once, and v_i as they are given by the index of the node.
@@ -39,7 +39,7 @@ struct KeptNodes {
       hold(walls, i, node.v);
     }
     take(&Node<D>::v);
-    for (const auto& [i, node] : body.nodes) turns = turns && walls.constrained_axes(i) == 0;
+    for (const auto& [i, node] : body.nodes) held |= walls.constrained_axes(i);
     Mat<double, D> one{};
     for (int a = 0; a < D; ++a) one[a][a] = 1.0;
     F.assign(body.particles.size(), one);
@@ -173,7 +173,7 @@ struct KeptNodes {
   /// the body changes by the moment of the forces, L_i = I (I - D)^-1 L is that of its nodes, and
   /// what this lacks is given to them by forces m_i alpha x r_i (particles/kept_spin.hpp).
   void turn() {
-    if (!turns) return;
+    if (held != 0) return;  // It is a part of what turns.
     double M = 0.0;
     Vector3 c = Vector3::zero(), p = c, now = c, moment = c;
     const auto place = [&](const Index<D>& i) {
@@ -225,7 +225,21 @@ struct KeptNodes {
       node.v += node.dv;
     }
     take(&Node<D>::v);
-    for (auto& [i, node] : body.nodes) u[i] += step.dt * node.v;
+    take(&Node<D>::dv);
+    // (M5)
+    const double before = step.dt_before, acts = 0.5 * (step.dt + before),
+                 shift = before > 0.0 ? 0.125 * (before * before - step.dt * step.dt) : 0.0;
+    double M = 0.0;
+    Vec<double, D> of_body = Vec<double, D>::zero();
+    for (const auto& [i, node] : body.nodes) {
+      if (step.walls_of(body).image(i)) continue;
+      M += node.m;
+      of_body += node.m * node.dv;
+    }
+    for (int a = 0; a < D; ++a)
+      if (held >> a & 1u) of_body[a] = 0.0;
+    for (auto& [i, node] : body.nodes)
+      u[i] += step.dt * node.v + (shift / acts) * (node.dv - (1.0 / M) * of_body);
   }
 
   /// x_p, F_p, (M1), and J dev sigma by L dt = (F_p - F_p before) (F_p before)^-1, (M4).

@@ -29,15 +29,22 @@ double least_moment(const Matrix3& inertia) {
   return std::min({principal.value[0], principal.value[1], principal.value[2]});
 }
 
-/// Do walls hold nodes of a body? What turns then are mirrored bodies, of which it is a part: such
-/// a one keeps the inertia of its nodes, also about the normal of a slip wall.
+/// The axes along which walls hold nodes of each body, a bit each. What turns then are mirrored
+/// bodies, of which it is a part: such a one keeps the inertia of its nodes, also about the normal
+/// of a slip wall.
 template <int D>
-bool is_held(const Domain<D>& domain, int body) {
-  return std::ranges::any_of(patches_of<D>(domain.grid.patches, body), [&](const Patch<D>& patch) {
-    bool held = false;
-    for_each_constrained_node(domain.grid, patch, [&](int, unsigned) { held = true; });
-    return held;
-  });
+std::vector<unsigned> held_axes(const Domain<D>& domain) {
+  std::vector<std::int64_t> nodes(D * domain.bodies.size());
+  for (const Patch<D>& patch : domain.grid.patches)
+    for_each_constrained_node(domain.grid, patch, [&](int, unsigned constrained) {
+      for (std::size_t a = 0; a < D; ++a)
+        nodes[D * static_cast<std::size_t>(patch.body) + a] += constrained >> a & 1u;
+    });
+  domain.grid.partition.comm->all_sum(nodes);
+  std::vector<unsigned> held(domain.bodies.size());
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    if (nodes[k] > 0) held[k / D] |= 1u << k % D;
+  return held;
 }
 
 /// Of a body the first tile that a rank has of it.
@@ -52,21 +59,18 @@ struct FirstTile {
 template <int D>
 void list_kept_spins(Domain<D>& domain) {
   const std::vector<PartSums> parts = sums_of_bodies(domain, SumsOf::particles);
-  std::vector<std::int64_t> held(parts.size());
-  for (std::size_t b = 0; b < held.size(); ++b)
-    held[b] = domain.bodies[b].keeps_nodes() && is_held(domain, static_cast<int>(b));
-  domain.grid.partition.comm->all_sum(held);
+  const std::vector<unsigned> held = held_axes(domain);
   for (std::size_t b = 0; b < parts.size(); ++b) {
-    if (!domain.bodies[b].keeps_nodes() || held[b] > 0) continue;
+    if (!domain.bodies[b].keeps_nodes()) continue;
     KeptSpin turning;
+    turning.held = held[b];
     turning.body = static_cast<int>(b);
     turning.mass = parts[b].mass;
     turning.excess = 0.5 * turning.mass * std::pow(domain.grid.cell_size, 2);
     const double least = least_moment<D>(parts[b].inertia) / turning.excess;
-    const bool turns = least >= least_inertia && least <= most_inertia;
+    const bool turns = held[b] == 0 && least >= least_inertia && least <= most_inertia;
     if (!turns) turning.excess = 0.0;
-    // Restitution asks how all of them move.
-    if (turns || restitution_takes(domain.contact_settings)) domain.kept_spins.push_back(turning);
+    domain.kept_spins.push_back(turning);
   }
   find_shared_bodies(domain);
 }
@@ -116,6 +120,7 @@ void find_kept_spins(Domain<D>& domain) {
   for (KeptSpin& turning : domain.kept_spins) {
     const PartSums& part = nodes[static_cast<std::size_t>(turning.body)];
     turning.begun = true;
+    turning.shifted = false;
     turning.centre = part.centre;
     turning.velocity = velocity_of(part);
     turning.spin = spin_of(part, D);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* other_version = "it was made by another version of mpm3dpp";
 constexpr const char* other_case = "it was made from another case";
-constexpr std::int64_t format = 25;  // raised whenever exchange() or what a value means changes
+constexpr std::int64_t format = 26;  // raised whenever exchange() or what a value means changes
 
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {

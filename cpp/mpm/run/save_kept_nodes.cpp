@@ -86,11 +86,12 @@ void exchange_kept_spins(Domain<D>& domain, StateStream& stream) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     const KeptSpin &found = all[k], &own = domain.kept_spins[k];
     bool fine = found.body == own.body && found.mass == own.mass && found.excess == own.excess;
-    for (const Vector3& v :
-         {found.momentum, found.of_nodes, found.spin, found.centre, found.velocity})
+    for (const Vector3& v : {found.momentum, found.of_nodes, found.spin, found.centre,
+                             found.velocity, found.acceleration})
       fine = fine && std::isfinite(dot(v, v));
     StateStream::check(fine, "its nodes are damaged");
     StateStream::check_flag(found.begun);
+    StateStream::check_flag(found.shifted);
   }
   domain.kept_spins = std::move(all);
   find_shared_bodies(domain);

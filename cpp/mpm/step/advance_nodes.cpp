@@ -251,6 +251,7 @@ void finish(Domain<D>& domain, std::size_t p, const NodeWork& done) {
   if (!patch.keeps) return;
   add_work_of_surfaces(domain, p);
   count_kept_nodes(domain, move_kept_nodes(domain, patch, block, own, sums), sums);
+  sums.kept_ahead -= 0.5 * shift_kept_nodes(domain, patch, block, own);
 }
 
 }  // namespace

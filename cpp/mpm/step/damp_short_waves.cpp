@@ -143,7 +143,7 @@ void damp_short_waves(Domain<D>& domain) {
   // Where a body is bent Q* Q takes some of its turning; what is kept of that gives it back.
   const auto leave_out_turning = [&](double sign) {
     sum_over_bodies<AngularMomentum>(
-        domain,
+        domain, [](const KeptSpin& turning) { return turning.begun; },
         [&](std::size_t p, const KeptSpin& turning) {
           return angular_momentum_of_kept(grid, grid.patches[p], turning);
         },

@@ -79,6 +79,37 @@ double time_of_forces(const Domain<D>& domain, const Patch<D>& patch) {
   return time_of_forces(domain, patch.keeps);
 }
 
+/// Where the step changes nodes go by this more along their acceleration against that of their body
+/// [s^2], (M5): leapfrog keeps K + U - dt^2 / 8 sum f_i^2 / m_i rather than K + U (Hairer, Lubich &
+/// Wanner 2006, chapter IX), so that a step that changes alone would make or take the difference.
+template <int D>
+double shift_by_step(const Domain<D>& domain) {
+  const double before = domain.step_before, now = domain.time_step;
+  return before > 0.0 && now > 0.0 ? 0.125 * (before * before - now * now) : 0.0;
+}
+
+/// What the step's change adds to the displacements of a block, (M5). Returns the work of the
+/// forces along it [J]: it changes what is stored and no velocity, and update_in_body() takes half
+/// of it for that of a velocity.
+template <int D>
+double shift_kept_nodes(const Domain<D>& domain, const Patch<D>& patch, const NodeBlock<D>& block,
+                        const double* own) {
+  const double shift = shift_by_step(domain), acts = time_of_forces(domain, true);
+  if (shift == 0.0) return 0.0;
+  const Vector3 of_body = acceleration_of(domain.kept_spins, patch.body);
+  double work = 0.0;
+  for (int n = 0; n < block.count; ++n) {
+    const double m = own[n] * block.records[n][mass_at];
+    for (int a = 0; a < D; ++a) {
+      const double acceleration = block.records[n][increment_at + a] / acts,
+                   further = shift * (acceleration - of_body[a]);
+      block.displacements[n][a] += further;
+      work += m * acceleration * further;
+    }
+  }
+  return work;
+}
+
 /// The nodes of a block go with the velocities that they have by now, (M3); kinetic energy and
 /// momentum in the middle of the step. Returns by how much the first is more than it was [J].
 template <int D>

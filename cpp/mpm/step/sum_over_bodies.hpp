@@ -28,13 +28,15 @@ struct TermOfPatch {
 };
 
 /// The terms of the patches of bodies that other ranks have too, by body and tile.
-template <class Term, int D, class F>
-std::vector<TermOfPatch<D, Term>> terms_of_shared_bodies(Domain<D>& domain, F&& of) {
+template <class Term, int D, class Wanted, class F>
+std::vector<TermOfPatch<D, Term>> terms_of_shared_bodies(Domain<D>& domain, Wanted&& wanted,
+                                                         F&& of) {
   using Told = TermOfPatch<D, Term>;
   std::vector<Told> all;
   Mail mail;
   for (const SharedBody& shared : domain.shared_bodies) {
     const KeptSpin& turning = domain.kept_spins[static_cast<std::size_t>(shared.spin)];
+    if (!wanted(turning)) continue;
     for (const Patch<D>& patch : patches_of<D>(domain.grid.patches, turning.body)) {
       if (patch.foreign) continue;
       const auto p = static_cast<std::size_t>(&patch - domain.grid.patches.data());
@@ -54,15 +56,17 @@ std::vector<TermOfPatch<D, Term>> terms_of_shared_bodies(Domain<D>& domain, F&& 
 /// In place of the number of a patch: another rank has it.
 inline constexpr std::size_t of_another_rank = static_cast<std::size_t>(-1);
 
-/// take(turning, sum of of(p, turning), patch) for the bodies of Domain::kept_spins that this rank
-/// has patches p of; the patch is the first of all, or `of_another_rank`.
-template <class Term, int D, class F, class Take>
-void sum_over_bodies(Domain<D>& domain, F&& of, Take&& take) {
-  if (domain.kept_spins.empty()) return;
+/// take(turning, sum of of(p, turning), patch) for the bodies of Domain::kept_spins that are wanted
+/// and that this rank has patches p of; the patch is the first of all, or `of_another_rank`. All
+/// ranks want the same.
+template <class Term, int D, class Wanted, class F, class Take>
+void sum_over_bodies(Domain<D>& domain, Wanted&& wanted, F&& of, Take&& take) {
+  if (std::ranges::none_of(domain.kept_spins, wanted)) return;
   std::vector<TermOfPatch<D, Term>> told;
-  if (!domain.grid.partition.alone()) told = terms_of_shared_bodies<Term>(domain, of);
+  if (!domain.grid.partition.alone()) told = terms_of_shared_bodies<Term>(domain, wanted, of);
   domain.threads.for_each(domain.kept_spins.size(), [&](std::size_t k) {
     KeptSpin& turning = domain.kept_spins[k];
+    if (!wanted(turning)) return;
     const auto patches = patches_of<D>(domain.grid.patches, turning.body);
     const auto begin = static_cast<std::size_t>(patches.data() - domain.grid.patches.data());
     const auto number = static_cast<std::int32_t>(k);

@@ -1,12 +1,14 @@
 // Bodies on nodes of their own turn as their particles would, not as their nodes
 // (particles/kept_spin.hpp): with the angular momentum L of the body, which the moment T of all
 // forces changes, the nodes shall have I (I - D)^-1 L by the end of the step. What they lack of it
-// besides T is given to them as that of forces m_i alpha x r_i about the centre of mass.
+// besides T is given to them as that of forces m_i alpha x r_i about the centre of mass. So is in
+// the step after what (M5) has taken of it as the step changed.
 #include "mpm/followers/follow.hpp"
 #include "mpm/step/kept_nodes.hpp"
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stage_functions.hpp"
 #include "mpm/step/sum_over_bodies.hpp"
+#include "mpm/surfaces/restitution.hpp"
 
 namespace mpm {
 namespace {
@@ -127,9 +129,12 @@ Vector3 lacking(const Domain<D>& domain, const Patch<D>& patch, const TurningSum
   const double acts = time_of_forces(domain, patch);
   const Vector3 now = sums.motion.angular;
   // What has changed the nodes beside forces, as damping or what sets velocities.
-  turning.momentum =
-      turning.begun ? turning.momentum + of_particles(now - turning.of_nodes) : of_particles(now);
+  if (!turning.begun)
+    turning.momentum = of_particles(now);
+  else if (!turning.shifted)
+    turning.momentum += of_particles(now - turning.of_nodes);
   turning.begun = true;
+  turning.shifted = shift_by_step(domain) != 0.0;
   turning.momentum += acts * (sums.moment + moment);
   turning.spin = spin_of(of_body, turning.momentum, axes);
   if constexpr (D == 3) {
@@ -152,18 +157,27 @@ void turn_in_body(Domain<D>& domain) {
   const auto of_patch = [&](std::size_t p, const KeptSpin& turning) {
     return sums_of_nodes(domain, p, turning.centre);
   };
+  // What has no excess turns as its nodes do; restitution asks how it moves, (M5) how it speeds up.
+  const bool all = restitution_takes(domain.contact_settings) || shift_by_step(domain) != 0.0;
+  const auto wanted = [&](const KeptSpin& turning) {
+    return all || turning.excess > 0.0 || turning.shifted;
+  };
+  for (KeptSpin& turning : domain.kept_spins) turning.begun = turning.begun && wanted(turning);
   sum_over_bodies<TurningSums>(
-      domain, of_patch, [&](KeptSpin& turning, TurningSums sums, std::size_t first) {
+      domain, wanted, of_patch, [&](KeptSpin& turning, TurningSums sums, std::size_t first) {
         move_to_centre(sums, turning.centre);
         const auto patches = patches_of<D>(domain.grid.patches, turning.body);
         const Wrench as_whole = acting_as_whole(domain, turning.body);
+        const Vector3 straight = (1.0 / sums.motion.mass) * as_whole.force;
+        turning.acceleration =
+            (1.0 / sums.motion.mass) * sums.force + straight + in_space<D>(domain.gravity);
+        for (int a = 0; a < D; ++a)
+          if (turning.held >> a & 1u) turning.acceleration[a] = 0.0;
+        if (turning.held != 0) return;
+        turning.velocity = (1.0 / sums.motion.mass) * sums.motion.momentum +
+                           time_of_forces(domain, patches[0]) * turning.acceleration;
         const Vector3 alpha =
             lacking(domain, patches[0], sums, as_whole.moment_about(turning.centre), turning);
-        const Vector3 straight = (1.0 / sums.motion.mass) * as_whole.force;
-        turning.velocity =
-            (1.0 / sums.motion.mass) * sums.motion.momentum +
-            time_of_forces(domain, patches[0]) *
-                ((1.0 / sums.motion.mass) * sums.force + straight + in_space<D>(domain.gravity));
         // Kinetic energy is that of the body too.
         if (first != of_another_rank)
           domain.sums[first].kept_ahead -= 0.5 * turning.excess * dot(turning.spin, turning.spin);

@@ -36,7 +36,7 @@ class SurfaceComparison {
   Report& report;
 
  private:
-  static constexpr double tolerance = 1e-11, cell = SurfaceTwin<D>::cell;
+  static constexpr double tolerance = 3e-11, cell = SurfaceTwin<D>::cell;
 
   /// What differs most of vectors, and how large they are.
   struct Difference {
