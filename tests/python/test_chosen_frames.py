@@ -76,6 +76,7 @@ def box(walls: str, lower: int = 0) -> str:
         {"block": "velocity = [7, 0]", "bodies": OTHER.format("soft", "auto")},
         {"block": "velocity = [8, 0]", "contact": "enabled = false"},
         {"block": "velocity = [0, 8]", "grid": box('y_min = "contact"')},
+        {"run": 'time_step = "13 us"'},
     ],
 )
 def test_in_the_body(given) -> None:
@@ -141,6 +142,7 @@ def test_the_step_follows_the_frame() -> None:
             {"block": "velocity = [0, -8]", "grid": box('y_min = "contact"')},
             "it meets grid.box.walls.y_min at 0.22 of the speed of its waves",
         ),
+        ({"run": 'time_step = "15 us"'}, "lets its waves pass 0.55 of a cell, more than the 0.5"),
     ],
 )
 def test_in_space(given, why) -> None:

@@ -17,7 +17,7 @@ from mpm3dpp.base.frames import ALONG, AUTO, MATERIAL, UPDATED
 from .body import Body
 from .choices import BASIS
 from .frame import against_all, against_body, keys_at_nodes
-from .meetings import meets_too_fast
+from .meetings import meets_too_fast, step_too_long
 
 if TYPE_CHECKING:
     from mpm3dpp.grains import Grains
@@ -123,8 +123,13 @@ def _reasons(case: Case, names: list[str]) -> dict[str, str]:
 
 
 def _against(case: Case, name: str) -> str:
-    """Return what the table of an entry has against nodes in it, or how fast it meets others."""
-    return _sentence(next(against_body(case, name), None)) or meets_too_fast(case, name)
+    """Return what the table of an entry has against nodes in it, or how fast it meets others, or
+    what its waves have against the step."""
+    return (
+        _sentence(next(against_body(case, name), None))
+        or meets_too_fast(case, name)
+        or step_too_long(case, name)
+    )
 
 
 def _of_all(case: Case) -> str:
