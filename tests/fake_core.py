@@ -14,7 +14,7 @@ from mpm3dpp import _core
 COLUMNS = (
     *("step", "time", "dt", "kinetic", "internal", "plastic", "viscous", "friction"),
     *("restitution", "contact", "springs", "external", "absorbed", "damped"),
-    *("eroded", "left", "bounded"),
+    *("eroded", "fracture", "left", "bounded"),
     *("numerical", "residual"),
     *("momentum_x", "momentum_y", "momentum_z"),
     *("numerical_mapping", "numerical_time"),
@@ -62,7 +62,7 @@ class FakeSimulation:
             touching = float(self.time >= self._first)
             kinetic = 4.0 - touching
             momentum = [0.0, 0.0, 0.0]
-            ledger = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1e-3, 1e-16, *momentum, -6e-4, -4e-4]
+            ledger = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1e-3, 1e-16, *momentum, -6e-4, -4e-4]
             self._rows.append([self.step, self.time, self.dt, kinetic, touching, *ledger])
 
     def history(self) -> np.ndarray:

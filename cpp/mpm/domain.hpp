@@ -61,6 +61,9 @@ struct Domain {
   double time_after = 0.0;    // of the step being made [s]
   double time_step = 0.0;     // of the step being made [s]
   double step_before = 0.0;   // the one before [s]; 0 in the first
+  // By which nodes in bodies are shifted as steps change, (M5), in this one and the one before
+  // [s^2].
+  double shift = 0.0, shift_before = 0.0;
   std::int64_t step = 0;      // steps made
   std::int64_t renewals = 0;  // of nodes of all bodies (run/renew_reference.hpp)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from mpm3dpp import Case, CaseError
+from mpm3dpp import Body, Case, CaseError, Particles
 from mpm3dpp.case.choose_frames import all_in_space
 from mpm3dpp.fill.build import build
 from mpm3dpp.run.summary import echo
@@ -149,6 +149,16 @@ def test_in_space(given, why) -> None:
     case = case_of(**given)
     assert case.body["block"].frame == "updated"
     assert why in case.why_in_space["block"]
+
+
+def test_particles_with_velocities_of_their_own_meet_too() -> None:
+    places = [[x, y] for x in (0.0195, 0.0205) for y in (0.0005, 0.0015)]
+    particles = Particles(places, volumes=[1e-6] * 4, velocities=[[-8.0, 0.0]] * 4)
+    case = case_of(bodies=OTHER.format("soft", "auto"))
+    case.body["soft"] = Body(material="soft", particles=particles)
+    case.complete_and_check()
+    assert "it meets soft at 0.22" in case.why_in_space["block"]
+    assert case.body["soft"].frame == "updated"
 
 
 def test_what_yields_is_in_space_at_half_the_speed() -> None:

@@ -240,11 +240,11 @@ def test_the_total_misses_what_numerics_took() -> None:
     rng = np.random.default_rng(1)
     history = {name: rng.uniform(1.0, 2.0, 9) for name in COLUMNS}
     gone_to = ("plastic", "viscous", "friction", "contact", "springs", "absorbed", "damped")
-    gone_to += ("bounded", "eroded", "left", "numerical", "restitution")
+    gone_to += ("bounded", "eroded", "fracture", "left", "numerical", "restitution")
     gone = sum(history[name] for name in gone_to)
     history["kinetic"] = 100.0 - gone - history["internal"] + history["external"]
     figure = energies.draw_energies(history)  # Of more curves than there are colours.
-    assert len(figure.axes[0].lines) == 15 and len(figure.axes[1].lines) == 16
+    assert len(figure.axes[0].lines) == 16 and len(figure.axes[1].lines) == 17
     [total] = [line for line in figure.axes[0].lines if line.get_label() == "total"]
     expected = 100.0 - history["contact"] - history["numerical"]
     assert np.allclose(total.get_ydata(), expected, rtol=1e-14)

@@ -27,7 +27,7 @@ UNSTABLE = CASE.replace('cell_size = "10 mm"', 'cell_size = "10 mm"\nbasis = "li
 )
 FIRST = (
     "step,time,dt,kinetic,internal,plastic,viscous,friction,restitution,contact,springs,external,"
-    "absorbed,damped,eroded,left,bounded,numerical,residual,momentum_x,momentum_y,momentum_z"
+    "absorbed,damped,eroded,fracture,left,bounded,numerical,residual,momentum_x,momentum_y,momentum_z"
 )
 KEYS = (
     *("version", "case_hash", "mass", "cell_size", "particles", "threads", "steps", "wall_time"),

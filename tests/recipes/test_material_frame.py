@@ -142,6 +142,20 @@ def test_a_body_falls_and_is_slowed_down() -> None:
     assert slowed.column("a", "velocity")[:, 0] == pytest.approx(3.0 * np.exp(-1.0), rel=1e-3)
 
 
+@pytest.mark.parametrize(("cells", "outputs"), [(3, 1), (3, 37), (1.4, 37)])
+def test_a_spin_is_slowed_down(cells: float, outputs: int) -> None:
+    """As exp(-alpha t), with the inertia of the body or, of few cells, of its nodes, however often
+    outputs change the step, of which each gives back what one step takes."""
+    shape = {"disc": {"centre": [0.0, 0.0], "radius": cells * CELL}}
+    body = {"shape": shape, "angular_velocity": 100.0, "damping": {"mass": 200.0}}
+    simulation = Simulation(frame_case(2, body, 1.0, nu=0.0))
+    for k in range(outputs):
+        simulation.advance(10**5, 5e-3 * (k + 1) / outputs)
+    (x, y), (u, v) = simulation.column("a", "position").T, simulation.column("a", "velocity").T
+    spin = (x * v - y * u).sum() / (x**2 + y**2).sum()
+    assert spin == pytest.approx(100.0 * np.exp(-1.0), rel=0.01)
+
+
 def test_a_body_force_accelerates() -> None:
     body = {
         "shape": {"box": {"lower": [0, 0], "upper": [0.006, 0.004]}},

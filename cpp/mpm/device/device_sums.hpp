@@ -35,6 +35,7 @@ struct DeviceSum {
     damped,
     bounded,
     energy_floor,
+    fracture,
     force_power,
     count
   };

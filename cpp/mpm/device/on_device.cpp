@@ -51,6 +51,7 @@ void take_sums(const double* sums, double fastest, const Vec<double, D>& gravity
   to.stress.damped = sums[S::damped];
   to.stress.bounded = sums[S::bounded];
   to.stress.energy_floor = sums[S::energy_floor];
+  to.stress.fracture = sums[S::fracture];
   to.stress.force_power = sums[S::force_power];
   to.stress.fastest = fastest;
   for (int axis = 0; axis < D; ++axis)

@@ -66,7 +66,11 @@ inline constexpr auto history_terms = std::to_array<HistoryTerm>({
      [](const StepState& s) { return s.ledger.damped; }, Role::energy},
     {"eroded", "J", "kinetic and recoverable energy that eroded particles took with them",
      [](const StepState& s) { return s.ledger.eroded; }, Role::energy},
-    {"left", "J", "the same of particles that left `grid.outflow_box`",
+    {"fracture", "J",
+     "energy that particles had stored which failed and bear nothing now; of materials with an "
+     "equation of state it stays in `internal`",
+     [](const StepState& s) { return s.ledger.fracture; }, Role::energy},
+    {"left", "J", "kinetic and recoverable energy of particles that left `grid.outflow_box`",
      [](const StepState& s) { return s.ledger.left; }, Role::energy},
     {"bounded", "J", "energy that the bounds of equations of state have taken, negative: given",
      [](const StepState& s) { return s.ledger.bounded; }, Role::energy},

@@ -1,7 +1,7 @@
 #pragma once
 // Where the energy and the momentum go. Every term is accumulated from its own sums:
 //   kinetic + internal + plastic + viscous + friction + restitution + contact + springs + absorbed
-//   + damped + eroded + left + bounded + numerical - external = start + residual.
+//   + damped + eroded + fracture + left + bounded + numerical - external = start + residual.
 //
 // Derivation: a particle's velocity changes by the interpolated increments
 // dv_p = sum N_ip f_i dt / m_i, eq. (17), so
@@ -33,6 +33,9 @@
 // eroded, and their momentum out of the sum; the dissipated energies stay where they are. Particles
 // that leave the region that is kept take theirs to the term left.
 //
+// What a particle has stored once it has failed and bears no stress goes to the term fracture, of
+// materials without an equation of state.
+//
 // The bounds of an equation of state (materials/material.hpp, EosBounds) take the work of tension
 // at its limit, and give what an energy below that of absolute zero lacks: the term bounded.
 //
@@ -58,7 +61,7 @@ struct StoredInSurfaces {
 struct Ledger {
   double kinetic = 0.0, internal = 0.0, plastic = 0.0, viscous = 0.0, friction = 0.0,
          restitution = 0.0, contact = 0.0, springs = 0.0, external = 0.0, absorbed = 0.0,
-         damped = 0.0, eroded = 0.0, left = 0.0, bounded = 0.0, mapping = 0.0,
+         damped = 0.0, eroded = 0.0, fracture = 0.0, left = 0.0, bounded = 0.0, mapping = 0.0,
          time_integration = 0.0;  // [J]
   double damped_stiffness = 0.0;  // the part of damped that damping of materials has taken [J]
   double unbalanced = 0.0;        // forces out of balance over those applied, of a run that settles
@@ -81,7 +84,7 @@ struct Ledger {
   double numerical() const { return mapping + time_integration + transferred; }
   double residual() const {
     return kinetic + internal + plastic + viscous + friction + restitution + contact + springs +
-           absorbed + damped + eroded + left + bounded + numerical() - external - start;
+           absorbed + damped + eroded + fracture + left + bounded + numerical() - external - start;
   }
   /// Energy made by numerics, as a fraction of the largest energy brought in; 0 while there is
   /// none. What transfers take does not hide what others make, and what they make on balance
@@ -148,7 +151,8 @@ struct Ledger {
     const double pushed = in_surfaces.push - now.push - s.surface_push,
                  rubbed = in_surfaces.rub - now.rub - s.surface_rub;
     for (std::size_t a = 0; a < D; ++a) momentum[a] = s.momentum[a];
-    internal += s.stress.internal + s.returned;
+    internal += s.stress.internal - s.stress.fracture + s.returned;
+    fracture += s.stress.fracture;
     plastic += s.stress.plastic;
     viscous += s.stress.viscous;
     damped_stiffness += s.stress.damped;

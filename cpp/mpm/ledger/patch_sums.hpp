@@ -67,6 +67,7 @@ struct PatchSums {
                             &stress.damped,
                             &stress.bounded,
                             &stress.energy_floor,
+                            &stress.fracture,
                             &stress.force_power,
                             &stress.averaging,
                             &kinetic,
@@ -106,7 +107,7 @@ struct PatchSums {
       f(prescribed.impulse[a]);
     }
   }
-  static constexpr std::size_t numbers = 38 + 3 * D;  // of for_each
+  static constexpr std::size_t numbers = 39 + 3 * D;  // of for_each
 };
 
 /// The sums over all patches of all ranks, which depend on no order.

@@ -69,7 +69,8 @@ MPM_FLATTEN MPM_HD void apply_failures(const MaterialView& material, const Failu
     writer.template add<true>(group, kinematics, group.read_stress(columns),
                               {left, deviator * group.get(block.dissipated),
                                select(separated, T(0.0), group.get(block.speed)),
-                               select(separated, T(0.0), group.get(block.viscous_pressure))});
+                               select(separated, T(0.0), group.get(block.viscous_pressure)),
+                               select(separated & (failed < gone), T(1.0), T(0.0))});
   });
   sums.eroded = sums.eroded || any(eroded);
 }

@@ -29,7 +29,8 @@ void add_material_columns(const Material& material, Columns& columns, MaterialCo
     at.damping_stress = columns.add("damping_stress", "Pa", Sym<double, D>::size);
   at.energy = material.eos ? columns.add("internal_energy", "J/m^3", 1) : -1;
   if (material.failures.empty()) return;
-  if (material.erodes()) at.recoverable = columns.add("recoverable_energy", "J/m^3", 1);
+  if (material.erodes() || !material.eos)
+    at.recoverable = columns.add("recoverable_energy", "J/m^3", 1);
   at.failed = columns.add("failed", "1", 1);
   for (const Failing& failing : material.failures)
     std::visit([&](const auto& model) { add(at.failure_state, model); }, failing.model);

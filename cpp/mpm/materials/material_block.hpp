@@ -46,7 +46,7 @@ struct MaterialColumns {
   int force_pressure = -1;      // that nodal forces add to the stress; with averaged volumes
   int damping_stress = -1;      // of the damping in proportion to the stiffness
   int energy = -1;              // internal, per initial volume; with an EOS
-  int recoverable = -1;         // energy per initial volume; where particles may be taken out
+  int recoverable = -1;         // energy per initial volume; where particles may fail
   int failed = -1;              // FailureAction; with failure models, or where particles may leave
   int failure_state = -1;       // of the failure models, one after another
   // Of matter that flows, with an affine transfer (step/flowing_matter.hpp): the volume beyond
@@ -74,6 +74,7 @@ struct StressSums {
   double bounded = 0.0;       // taken by the bounds of an equation of state; negative: given
   double energy_floor = 0.0;  // the part that the least energy has, never positive
   double force_power = 0.0;   // work over this strain of the stress that the nodal forces use
+  double fracture = 0.0;      // the part of internal that particles stored which bear nothing now
   double averaging = 0.0;     // the part that averaging volumes has made, beyond the forces' own
   double fastest = 0.0;       // largest c + |v| [m/s]
   bool negative_volume = false;

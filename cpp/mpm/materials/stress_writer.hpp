@@ -10,6 +10,7 @@ template <class T, int D>
 struct StressUpdate {
   Sym<T, D> stress;
   T dissipated, speed, viscous_pressure;
+  T gives_up = T(0.0);  // 1: it has failed and bears no stress, so that it stores nothing
 };
 
 template <class T, int D>
@@ -50,8 +51,11 @@ class StressWriter {
       done -=
           keep_energy(group, volume_change, heat, mean_stress, T(1.0 / 3.0) * trace(after.stress));
     if (columns_.recoverable) {
-      const T energy = group.read(columns_.recoverable);
-      group.write(columns_.recoverable, energy + (done - lost) * volume_change.per_volume);
+      const T energy = group.read(columns_.recoverable) + (done - lost) * volume_change.per_volume;
+      // With an equation of state there is heat in it.
+      const T given_up = columns_.energy ? T(0.0) : after.gives_up * energy;
+      fracture_ += select(valid, given_up / volume_change.per_volume, T(0.0));
+      group.write(columns_.recoverable, energy - given_up);
     }
     group.write(columns_.volume, volume_change.after);
     for (int i = 0; i < Sym<T, D>::size; ++i) group.write(columns_.stress[i], after.stress.c[i]);
@@ -91,6 +95,7 @@ class StressWriter {
     sums.bounded += sum(bounded_);
     sums.energy_floor += sum(floor_);
     sums.force_power += sum(force_power_);
+    sums.fracture += sum(fracture_);
     sums.fastest = max(sums.fastest, largest(fastest_));
     sums.negative_volume = sums.negative_volume || any(negative_);
   }
@@ -140,7 +145,7 @@ class StressWriter {
   const MaterialView& material_;
   const EosBounds bounds_;
   T internal_ = T(0.0), dissipated_ = T(0.0), viscous_ = T(0.0), force_power_ = T(0.0),
-    bounded_ = T(0.0), floor_ = T(0.0), fastest_ = T(0.0);
+    fracture_ = T(0.0), bounded_ = T(0.0), floor_ = T(0.0), fastest_ = T(0.0);
   Truth<T> negative_ = T(1.0) < T(0.0);
 };
 

@@ -1,8 +1,8 @@
 #pragma once
-// The turning of a body on nodes of its own. Its nodes have the spread of the shape functions, so
-// that they turn with the moment of inertia I of the particles and D = m h^2 / 2 more. Angular
-// momentum L is kept as that of the body, with I - D, and the nodes are given the spin that it has:
-// I (I - D)^-1 L is theirs.
+// The motion as a whole of a body on nodes of its own. These have the spread of the shape
+// functions, so that their moment of inertia I is that of the particles and D = m h^2 / 2 more.
+// Angular momentum L is kept as that of the body, with I - D, and the nodes are given the spin that
+// it has: I (I - D)^-1 L is theirs.
 #include <algorithm>
 #include <vector>
 
@@ -14,7 +14,6 @@ struct KeptSpin {
   int body = 0;
   unsigned held = 0;                   // axes along which walls hold nodes of it, a bit each
   bool begun = false;                  // are the others known?
-  bool shifted = false;                // have nodes gone by (M5) since, which L knows nothing of?
   Vector3 momentum = Vector3::zero();  // L about the centre, in the middle of the last step [N m s]
   Vector3 of_nodes = Vector3::zero();  // what the nodes have [N m s]
   Vector3 spin = Vector3::zero();      // [rad/s]

@@ -16,6 +16,7 @@
 #include "mpm/run/time_step.hpp"
 #include "mpm/run/use_device.hpp"
 #include "mpm/run/watch.hpp"
+#include "mpm/step/kept_nodes.hpp"
 #include "mpm/step/overlap.hpp"
 
 namespace mpm {
@@ -107,6 +108,8 @@ std::int64_t advance(Simulation<D>& simulation, std::int64_t max_steps, double e
     // What is strained before forces (USF) has no velocity from before the time 0.
     domain.step_before = domain.time == 0.0 ? 0.0 : domain.time_step;
     domain.time_step = step;
+    domain.shift_before = domain.shift;
+    domain.shift = holds_time_step(simulation) ? shift_between(domain.step_before, step) : 0.0;
     make_step(simulation, step == left ? next_stop : domain.time + step);
     ++made;
     if (!simulation.failure) look_for_failed(simulation);

@@ -115,7 +115,7 @@ void check_rest(const Simulation<D>& simulation, const StateStream& stream) {
   const auto& settle = simulation.settings.run.settle;
   const double earliest = settle ? -settle->longest : 0.0;
   check(domain.step >= 0 && domain.step < std::int64_t{1} << 62 && finite(domain.time) &&
-            domain.time >= earliest && finite(domain.time_step, domain.step_before) &&
+            domain.time >= earliest && finite(domain.time_step, domain.step_before, domain.shift) &&
             domain.step_before >= 0.0 && simulation.next_time_step > 0.0 &&
             finite(simulation.least_stable) && finite(domain.gravity),
         "its time is damaged");

@@ -9,7 +9,6 @@
 #include "mpm/run/part_sums.hpp"
 #include "mpm/step/node_loops.hpp"
 #include "mpm/step/sum_over_bodies.hpp"
-#include "mpm/surfaces/restitution.hpp"
 
 namespace mpm {
 namespace {
@@ -115,12 +114,12 @@ std::vector<KeptSpin> gather_kept_spins(const Domain<D>& domain) {
 
 template <int D>
 void find_kept_spins(Domain<D>& domain) {
+  domain.shift = 0.0;  // What it has taken of the angular momentum is not known any more.
   for (KeptSpin& turning : domain.kept_spins) turning.begun = false;
   const std::vector<PartSums> nodes = sums_of_bodies(domain, SumsOf::kept_nodes);
   for (KeptSpin& turning : domain.kept_spins) {
     const PartSums& part = nodes[static_cast<std::size_t>(turning.body)];
     turning.begun = true;
-    turning.shifted = false;
     turning.centre = part.centre;
     turning.velocity = velocity_of(part);
     turning.spin = spin_of(part, D);

@@ -5,7 +5,7 @@
 
 namespace mpm {
 
-/// The bodies that turn with more inertia than their particles have; with restitution all of them.
+/// All bodies on nodes of their own, also those that walls hold.
 template <int D>
 void list_kept_spins(Domain<D>& domain);
 

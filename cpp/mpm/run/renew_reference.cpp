@@ -174,7 +174,8 @@ void count_renewal(Domain<D>& domain, const std::vector<bool>& renewed,
   const std::vector<PartSums> after = sums_of_nodes(domain);
   domain.kept_spins = std::move(spins);
   for (KeptSpin& turning : domain.kept_spins)
-    turning.of_nodes = after[static_cast<std::size_t>(turning.body)].angular_momentum;
+    if (const auto b = static_cast<std::size_t>(turning.body); renewed[b])
+      turning.of_nodes = after[b].angular_momentum;
   find_shared_bodies(domain);
   for (std::size_t b = 0; b < renewed.size(); ++b) {
     if (!renewed[b]) continue;

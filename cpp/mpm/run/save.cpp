@@ -112,8 +112,8 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
   }
   if (domain.has_contact())
     exchange_contact(domain.contact, stream, domain.bodies.size(), domain.grid.partition);
-  stream(domain.time, domain.time_step, domain.step_before, domain.step, domain.renewals,
-         domain.gravity);
+  stream(domain.time, domain.time_step, domain.step_before, domain.shift, domain.step,
+         domain.renewals, domain.gravity);
   exchange_removed(stream, domain.eroded);
   exchange_removed(stream, domain.outflow);
   for (PartEnergies& part : domain.part_energies) exchange_sums(stream, part.sums);

@@ -91,7 +91,6 @@ void exchange_kept_spins(Domain<D>& domain, StateStream& stream) {
       fine = fine && std::isfinite(dot(v, v));
     StateStream::check(fine, "its nodes are damaged");
     StateStream::check_flag(found.begun);
-    StateStream::check_flag(found.shifted);
   }
   domain.kept_spins = std::move(all);
   find_shared_bodies(domain);

@@ -14,6 +14,7 @@
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stage_functions.hpp"
 #include "mpm/step/sum_over_bodies.hpp"
+#include "mpm/surfaces/restitution.hpp"
 
 namespace mpm {
 namespace {
@@ -141,9 +142,11 @@ void damp_short_waves(Domain<D>& domain) {
     });
   };
   // Where a body is bent Q* Q takes some of its turning; what is kept of that gives it back.
+  const bool all = restitution_takes(domain.contact_settings);
+  const auto wanted = [&](const KeptSpin& turning) { return all || turning.excess > 0.0; };
   const auto leave_out_turning = [&](double sign) {
     sum_over_bodies<AngularMomentum>(
-        domain, [](const KeptSpin& turning) { return turning.begun; },
+        domain, wanted,
         [&](std::size_t p, const KeptSpin& turning) {
           return angular_momentum_of_kept(grid, grid.patches[p], turning);
         },

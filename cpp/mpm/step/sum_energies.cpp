@@ -22,7 +22,8 @@ void add_part_energies(Domain<D>& domain) {
   for (std::size_t p = 0; p < domain.sums.size(); ++p) {
     const StressSums& stress = domain.sums[p].stress;
     domain.part_energies[domain.group_of[body_of_sums(domain, p)]].add(
-        {stress.internal + domain.sums[p].returned, stress.plastic, stress.viscous});
+        {stress.internal - stress.fracture + domain.sums[p].returned, stress.plastic,
+         stress.viscous});
   }
 }
 

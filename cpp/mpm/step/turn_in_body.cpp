@@ -131,10 +131,9 @@ Vector3 lacking(const Domain<D>& domain, const Patch<D>& patch, const TurningSum
   // What has changed the nodes beside forces, as damping or what sets velocities.
   if (!turning.begun)
     turning.momentum = of_particles(now);
-  else if (!turning.shifted)
+  else if (domain.shift_before == 0.0)
     turning.momentum += of_particles(now - turning.of_nodes);
   turning.begun = true;
-  turning.shifted = shift_by_step(domain) != 0.0;
   turning.momentum += acts * (sums.moment + moment);
   turning.spin = spin_of(of_body, turning.momentum, axes);
   if constexpr (D == 3) {
@@ -158,10 +157,9 @@ void turn_in_body(Domain<D>& domain) {
     return sums_of_nodes(domain, p, turning.centre);
   };
   // What has no excess turns as its nodes do; restitution asks how it moves, (M5) how it speeds up.
-  const bool all = restitution_takes(domain.contact_settings) || shift_by_step(domain) != 0.0;
-  const auto wanted = [&](const KeptSpin& turning) {
-    return all || turning.excess > 0.0 || turning.shifted;
-  };
+  const bool all = restitution_takes(domain.contact_settings) || domain.shift != 0.0 ||
+                   domain.shift_before != 0.0;
+  const auto wanted = [&](const KeptSpin& turning) { return all || turning.excess > 0.0; };
   for (KeptSpin& turning : domain.kept_spins) turning.begun = turning.begun && wanted(turning);
   sum_over_bodies<TurningSums>(
       domain, wanted, of_patch, [&](KeptSpin& turning, TurningSums sums, std::size_t first) {

@@ -17,12 +17,16 @@ from mpm3dpp.base.frames import ALONG, AUTO, MATERIAL, UPDATED
 from .body import Body
 from .choices import BASIS
 from .frame import against_all, against_body, keys_at_nodes
-from .meetings import meets_too_fast, step_too_long
+from .meetings import meets_too_fast
 
 if TYPE_CHECKING:
     from mpm3dpp.grains import Grains
 
     from .case import Case
+
+LONGEST_STEP = 0.5
+"""Of a cell, what waves may pass in a step that is given: contact of surfaces bears .6
+(`most_cfl_of_springs` of cpp/mpm/surfaces/law.hpp), and cells may be squeezed."""
 
 
 def choose_frames(case: Case, of_program: str = "") -> dict[str, str]:
@@ -128,7 +132,23 @@ def _against(case: Case, name: str) -> str:
     return (
         _sentence(next(against_body(case, name), None))
         or meets_too_fast(case, name)
-        or step_too_long(case, name)
+        or _step_too_long(case, name)
+    )
+
+
+def _step_too_long(case: Case, name: str) -> str:
+    """Return by how much a step that the case gives is too long for an entry on nodes of its own;
+    "" if it is not, or none is given."""
+    step = case.run.time_step
+    if step is None:
+        return ""
+    waves = case.material[case.parts()[name].material].sound_speed()
+    share = step * waves / case.grid.cell_size
+    if share <= LONGEST_STEP:
+        return ""
+    return (
+        f"run.time_step lets its waves pass {share:.2g} of a cell, more than the {LONGEST_STEP:g} "
+        "for which nodes in it leave room"
     )
 
 

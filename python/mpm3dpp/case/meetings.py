@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How fast bodies meet at the start, as far as a case says it in numbers, and steps for that."""
+"""How fast bodies meet at the start, as far as a case says it in numbers."""
 
 from __future__ import annotations
 
@@ -20,15 +20,16 @@ through each other: points lie as deep as their springs reach (docs/decisions/00
 """
 FASTEST_IF_IT_YIELDS = 0.1
 """The same of what yields, where no frame is said: it flows far, and into what it meets."""
-LONGEST_STEP = 0.5
-"""Of a cell, what waves may pass in a step that is given: contact of surfaces bears .6
-(`most_cfl_of_springs` of cpp/mpm/surfaces/law.hpp), and cells may be squeezed."""
 _ELASTIC = ("elastic", "neo_hookean")
 
 
 def velocity_at_start(case: Case, name: str) -> NDArray[np.float64] | None:
-    """Return how an entry moves at the start [m/s]; None where no numbers say so."""
+    """Return how an entry moves at the start [m/s], particles with velocities of their own in the
+    mean; None where no numbers say so."""
     part: Any = case.parts()[name]
+    particles = getattr(part, "particles", None)
+    if particles is not None and particles.velocities is not None:
+        return np.asarray(particles.velocities.mean(axis=0), dtype=float)
     motion = getattr(part, "motion", None)
     given = part.velocity if motion is None else motion.velocity
     dimension = case.grid.dimension
@@ -57,22 +58,6 @@ def meets_too_fast(case: Case, name: str) -> str:
                 f"{most:g}"
             )
     return ""
-
-
-def step_too_long(case: Case, name: str) -> str:
-    """Return by how much a step that the case gives is too long for an entry on nodes of its own;
-    "" if it is not, or none is given."""
-    step = case.run.time_step
-    if step is None:
-        return ""
-    waves = case.material[case.parts()[name].material].sound_speed()
-    share = step * waves / case.grid.cell_size
-    if share <= LONGEST_STEP:
-        return ""
-    return (
-        f"run.time_step lets its waves pass {share:.2g} of a cell, more than the {LONGEST_STEP:g} "
-        "for which nodes in it leave room"
-    )
 
 
 def _speeds(case: Case, name: str, own: NDArray[np.float64]) -> Iterator[tuple[str, float]]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mpm3dpp.base.errors import CaseError, key_text
 from mpm3dpp.base.frames import UPDATED
-from mpm3dpp.case.box import CONTACT, FACES
+from mpm3dpp.case.box import CONTACT, FACES, HOLDING
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.frame import in_body
 from mpm3dpp.case.meetings import FASTEST, velocity_at_start
@@ -85,7 +85,7 @@ def _meetings(case: Case, bodies: Filled, name: str) -> Iterator[tuple[str, floa
             yield key_text(case.part_path(other)), closing
     for face, wall in enumerate(case.grid.walls):
         axis, at_end = divmod(face, 2)
-        if wall == CONTACT:
+        if wall == CONTACT or wall in HOLDING:
             yield f"grid.box.walls.{FACES[face]}", float(own[axis]) * (1.0 if at_end else -1.0)
 
 

@@ -21,6 +21,8 @@ class SurfaceComparison {
     reference::Step<D>& step = twin_.step;
     domain.step_before = step.dt_before = domain.step == 0 ? 0.0 : domain.time_step;
     domain.time_step = step.dt = time_step * (1.0 + 0.3 * static_cast<double>(domain.step % 2));
+    domain.shift_before = domain.shift;
+    domain.shift = shift_between(domain.step_before, domain.time_step);
     domain.time_after = domain.time + domain.time_step;
     for (const std::size_t b : domain.prescribed)
       domain.bodies[b].motion->begin_step(domain.time, domain.time_after);

@@ -192,6 +192,8 @@ void check_stages(Report& report, BasisId basis, Scheme scheme, bool averages) {
     // Steps of different lengths, of which the first has none before it.
     domain.step_before = pair.step.dt_before = k == 0 ? 0.0 : domain.time_step;
     domain.time_step = pair.step.dt = dt * (1.0 + 0.3 * (k % 2));
+    domain.shift_before = domain.shift;
+    domain.shift = shift_between(domain.step_before, domain.time_step);
     domain.time_after = domain.time + domain.time_step;
     domain.step = 46 + k;  // The last is one in which short waves are damped.
     for (const Stage<D>& stage : pair.simulation->stages) {
