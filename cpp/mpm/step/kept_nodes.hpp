@@ -8,6 +8,7 @@
 //   f_i = - sum_p V_p sigma_p F_p^-T grad_X N_ip,   as V_p sigma_p F_p^-T = V0_p P_p     (M2)
 //   v_i += dt' (f_i / m_i + g),   u_i += dt v_i                                         (M3)
 //   L dt = (F_p - F_p before) (F_p before)^-1, for the material                         (M4)
+//   u_i += (dt before^2 - dt^2) / 8 (a_i - a of the body), where the step changes         (M5)
 // v_i is that of the middle of a step, so that forces act from the middle of the step before to
 // that of this one, dt' = (dt + dt before) / 2 (central differences), for half a step at the start.
 // For the ledger kinetic energy is told at the end of the step, which is as much further. External

@@ -124,7 +124,7 @@ __global__ void __launch_bounds__(stress_threads, MPM_STRESS_BLOCKS)
     write(DeviceSum::bounded, sums.bounded);
     write(DeviceSum::energy_floor, sums.energy_floor);
   }
-  write(DeviceSum::fracture, sums.fracture);
+  if constexpr (!std::is_same_v<Failures, NoFailures>) write(DeviceSum::fracture, sums.fracture);
   write(DeviceSum::force_power, step.power_scale * sums.force_power);
   if (!step.first) write_carried<stress_threads>(step.all, patch, carried, scratch);
   const double fastest = block_max<stress_threads>(sums.fastest, scratch);
