@@ -124,13 +124,9 @@ struct Ledger {
     for (std::size_t a = 0; a < D; ++a) prescribed_momentum[a] = sums[1 + a].value();
   }
 
-  /// Take over the sums of a step; `forces_follow` if the stress was updated before the forces
-  /// (USF), `affine` if the transfer is.
+  /// What prescribed motions have done in a step; returns their work [J].
   template <int D>
-  void add(const std::vector<PatchSums<D>>& patches, const ContactSums& contacts,
-           const StoredInSurfaces& now, const RemovedTotal& by_erosion,
-           const RemovedTotal& out_of_region, bool forces_follow, bool affine, Comm& comm) {
-    const PatchSums<D> s = total_of(patches, comm);
+  double add_prescribed(const PatchSums<D>& s) {
     const double motion = s.prescribed.kinetic - prescribed_kinetic - s.prescribed.work;
     prescribed_kinetic = s.prescribed.kinetic;
     motion_work += motion;
@@ -139,6 +135,17 @@ struct Ledger {
           s.prescribed.momentum[a] - prescribed_momentum[a] - s.prescribed.impulse[a];
       prescribed_momentum[a] = s.prescribed.momentum[a];
     }
+    return motion;
+  }
+
+  /// Take over the sums of a step; `forces_follow` if the stress was updated before the forces
+  /// (USF), `affine` if the transfer is.
+  template <int D>
+  void add(const std::vector<PatchSums<D>>& patches, const ContactSums& contacts,
+           const StoredInSurfaces& now, const RemovedTotal& by_erosion,
+           const RemovedTotal& out_of_region, bool forces_follow, bool affine, Comm& comm) {
+    const PatchSums<D> s = total_of(patches, comm);
+    const double motion = add_prescribed(s);
     const double gone = by_erosion.recoverable + out_of_region.recoverable;
     internal -= gone - gone_recoverable;
     gone_recoverable = gone;
