@@ -57,10 +57,10 @@ struct Domain {
   double short_wave_damping = 0.0;  // of bodies on nodes of their own [c / h]
   std::int64_t filter_every = 1;    // ... in each step whose number this divides
 
-  double time = 0.0;          // [s]
-  double time_after = 0.0;    // of the step being made [s]
-  double time_step = 0.0;     // of the step being made [s]
-  double step_before = 0.0;   // the one before [s]; 0 in the first
+  double time = 0.0;         // [s]
+  double time_after = 0.0;   // of the step being made [s]
+  double time_step = 0.0;    // of the step being made [s]
+  double step_before = 0.0;  // the one before [s]; 0 in the first
   // By which nodes in bodies are shifted as steps change, (M5), in this one and the one before
   // [s^2].
   double shift = 0.0, shift_before = 0.0;
