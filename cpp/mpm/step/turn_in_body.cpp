@@ -81,7 +81,7 @@ TurningSums sums_of_nodes(Domain<D>& domain, std::size_t p, const Vector3& about
 
 /// Forces m (g + alpha x r) to the nodes of a patch, r from a centre. Patches that hold a node get
 /// the same bits, as places are those of its index in the grid: copies of a node that differ by
-/// rounding would drift apart, d'' = alpha x d, and tear the body after some ten thousand steps.
+/// rounding would drift apart, d'' = alpha x d, and tear the body after 100,000 steps of hits.
 template <int D>
 void add_forces(Domain<D>& domain, std::size_t p, const Vector3& centre, const Vector3& straight,
                 const Vector3& alpha) {
