@@ -93,7 +93,7 @@ def body_lines(manifest: Manifest) -> list[str]:
     """
     grid = manifest.case.get("grid", {})
     flat, walls = grid.get("dimension") == 2, grid.get("box", {}).get("walls", {})
-    whole = not {"slip", "fixed"} & set(walls.values())
+    whole = not any(wall in ("slip", "fixed") for wall in walls.values())
     unit, axes = ("J/m", "xy") if flat else ("J", "xyz")
     given = manifest.case.get("body", {})
     lines = []
