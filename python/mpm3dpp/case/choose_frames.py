@@ -137,8 +137,8 @@ def _against(case: Case, name: str) -> str:
 
 
 def _step_too_long(case: Case, name: str) -> str:
-    """Return by how much a step that the case gives is too long for an entry on nodes of its own;
-    "" if it is not, or none is given."""
+    """Return how far waves of an entry go in a step that the case gives, if that is too far for
+    nodes in it; "" if not, or if none is given."""
     step = case.run.time_step
     if step is None:
         return ""

@@ -38,6 +38,7 @@ class SurfaceComparison {
   Report& report;
 
  private:
+  // Rounding: of bonds, which pull by small differences of places, 2e-11, of all else below 1e-11.
   static constexpr double tolerance = 3e-11, cell = SurfaceTwin<D>::cell;
 
   /// What differs most of vectors, and how large they are.
