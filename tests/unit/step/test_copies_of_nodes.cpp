@@ -40,7 +40,7 @@ void check_copies(Report& report, double restitution) {
   Simulation<D>& simulation = *twin.simulation;
   advance(simulation, 300, 1e9);
   TileGrid<D>& grid = simulation.domain.grid;
-  using Motion = std::array<double, 2 * D>;
+  using Motion = std::array<double, 2 * std::size_t{D}>;
   std::map<std::pair<int, Index<D>>, Motion> first;
   int copies = 0, different = 0;
   for (const Patch<D>& patch : grid.patches) {
