@@ -1,5 +1,6 @@
 // The catalogue of material models, and one point of a material by itself.
 #include "catalogue.hpp"
+#include "mpm/particles/add_columns.hpp"
 #include "mpm/particles/make_body.hpp"
 #include "mpm/run/drive_material.hpp"
 #include "mpm/step/transfer/transfer.hpp"

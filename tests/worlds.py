@@ -156,6 +156,8 @@ def largest_differences(here: Simulation, there: Simulation, world: World) -> di
     apart: dict[str, float] = {}
     for number, name in enumerate(here.bodies):
         for column in here.core.columns(number):
+            if column.name == "surface_opposite":
+                continue  # the number of a body
             mine = here.column(name, column.name)
             theirs = world.seen_from_here(there.column(name, column.name), column.name)
             sizes[column.name] = max(sizes.get(column.name, 0.0), float(np.abs(mine).max()))

@@ -31,6 +31,8 @@ LAYERS = {
     "followers/node_table.hpp": 5,
     "followers/followers.hpp": 6,
     "surfaces/hosts.hpp": 3,
+    "surfaces/opposite.hpp": 3,
+    "surfaces/pressing_touches.hpp": 4,
     "surfaces/acting_on_bodies.hpp": 4,
     "surfaces/other_ranks.hpp": 4,
     "surfaces/surfaces.hpp": 5,

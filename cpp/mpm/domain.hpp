@@ -125,7 +125,7 @@ struct Domain {
   /// Do bodies meet at nodes?
   bool has_contact() const {
     return contact_settings.enabled && !contact_settings.bonded && bodies.size() > 1 &&
-           !surfaces.meet;
+           !(surfaces.meet && surfaces.pressed_by < 2);
   }
   bool has_springs() const { return has_contact() && may_spring(contact_settings.response); }
   /// f(pool, row) for the particles that take part, in the order of the lists.

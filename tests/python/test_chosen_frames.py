@@ -29,6 +29,10 @@ strength = {{ elastic = {{ E = "1 MPa", nu = 0.3 }} }}
 density = 1000
 strength = {{ fluid = {{}} }}
 eos = {{ tait = {{ c0 = 10 }} }}
+[material.air]
+density = 1.2
+strength = {{ fluid = {{}} }}
+eos = {{ ideal_gas = {{ gamma = 1.4, E0 = "0.25 MPa" }} }}
 [material.sand]
 density = 1600
 strength = {{ mohr_coulomb = {{ E = "1 MPa", nu = 0.3, cohesion = 0, friction_angle = "33 deg" }} }}
@@ -47,6 +51,11 @@ OTHER = """
 material = "{0}"
 shape = {{ box = {{ lower = ["20 mm", 0], upper = ["28 mm", "8 mm"] }} }}
 frame = "{1}"
+"""
+BOND = """
+[[contact.pair]]
+bodies = ["{0}", "{1}"]
+bonded = true
 """
 TEXT = CASE.format(preset="", grid="", run="", contact="", soft="", block="", bodies="")
 KEYS = ("preset", "grid", "run", "contact", "soft", "block", "bodies")
@@ -68,7 +77,10 @@ def box(walls: str, lower: int = 0) -> str:
         {"soft": "failure = { principal_stress = { limit = 1e4 } }"},
         {"contact": "friction = 0.3\nrestitution = 0.5"},
         {"bodies": OTHER.format("steel", "updated")},
-        {"bodies": OTHER.format("water", "auto"), "contact": "enabled = false"},
+        {"bodies": OTHER.format("water", "auto")},
+        {"bodies": OTHER.format("sand", "auto"), "contact": "friction = 0.3"},
+        {"bodies": OTHER.format("soft", "updated")},
+        {"bodies": OTHER.format("air", "auto"), "contact": "enabled = false"},
         {"grid": box('y_min = "contact", x_max = "contact"')},
         {"grid": box('x_min = "slip", y_min = "fixed"')},
         {"grid": box('x_min = "slip"', -4)},
@@ -92,7 +104,7 @@ def test_it_is_the_default() -> None:
 
 def test_a_device_has_them_in_space() -> None:
     """Of those alone that are left to us; the case that was given stays as it is."""
-    case = case_of(bodies=OTHER.format("water", "auto"), contact="enabled = false")
+    case = case_of(bodies=OTHER.format("water", "auto"))
     there = all_in_space(case, "a device makes the steps")
     assert case.body["block"].frame == "material"
     assert there.body["block"].frame == "updated" and there.run.cfl == 0.5
@@ -108,7 +120,8 @@ def test_a_mistake_is_told_where_it_is_looked_for() -> None:
 
 def test_the_step_follows_the_frame() -> None:
     assert case_of().run.cfl == 0.4
-    assert case_of(bodies=OTHER.format("sand", "auto")).run.cfl == 0.5
+    assert case_of(bodies=OTHER.format("sand", "auto")).run.cfl == 0.4
+    assert case_of(bodies=OTHER.format("air", "auto")).run.cfl == 0.5
 
 
 @pytest.mark.parametrize(
@@ -128,11 +141,18 @@ def test_the_step_follows_the_frame() -> None:
             {"soft": 'failure = { principal_stress = { limit = 1e4, action = "erode" } }'},
             'material.soft.failure whose action is "erode"',
         ),
-        ({"bodies": OTHER.format("water", "auto")}, "it may touch water, whose nodes lie in space"),
-        ({"bodies": OTHER.format("sand", "auto")}, "it may touch sand, whose nodes lie in space"),
+        ({"bodies": OTHER.format("air", "auto")}, "it may touch air, a gas, whose nodes lie"),
         (
-            {"bodies": OTHER.format("soft", "updated")},
-            "it may touch soft, whose nodes lie in space",
+            {"bodies": OTHER.format("sand", "auto") + BOND.format("block", "sand")},
+            "block is bonded to sand, whose nodes lie in space",
+        ),
+        (
+            {
+                "bodies": OTHER.format("sand", "auto")
+                + OTHER.format("steel", "updated").replace("20", "30").replace("28", "38")
+                + BOND.format("steel", "sand")
+            },
+            "steel is bonded to sand, whose nodes lie in space",
         ),
         (  # Waves have 36.7 m/s.
             {"block": "velocity = [8, 0]", "bodies": OTHER.format("soft", "auto")},
@@ -199,8 +219,10 @@ def test_no_frame_of_what_does_not_deform() -> None:
 def test_what_is_said_is_kept() -> None:
     case = case_of(bodies=OTHER.format("soft", "material"))
     assert set(case.why_in_space) == {"block"}
-    with pytest.raises(CaseError, match="contact with block, which has another frame"):
-        case_of(run='transfer = "apic"', bodies=OTHER.format("soft", "material"))
+    case = case_of(run='transfer = "apic"', bodies=OTHER.format("soft", "material"))
+    assert [body.frame for body in case.body.values()] == ["updated", "material"]
+    with pytest.raises(CaseError, match="between both frames: it may touch air, a gas"):
+        case_of(bodies=OTHER.format("soft", "material") + OTHER.format("air", "auto"))
 
 
 def test_grains_likewise() -> None:
@@ -257,7 +279,7 @@ def test_a_body_that_serves_two_cases_is_chosen_for_each() -> None:
 def test_the_echo_says_which_and_why() -> None:
     case = case_of(bodies=OTHER.format("sand", "auto"))
     lines = [line for line in echo(case, build(case)).splitlines() if line.startswith("frame: ")]
-    assert lines[0].startswith('frame: "updated" for block, as it may touch sand')
+    assert lines[0].startswith('frame: "material" for block: nodes lie in each body')
     assert lines[1].startswith('frame: "updated" for sand, as frame = "material" does not go with')
     alone = case_of()
     said = alone.with_({"body.block.frame": "updated"})

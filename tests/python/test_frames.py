@@ -41,6 +41,10 @@ BOX = 'lower = ["-50 mm", "-50 mm"], upper = ["50 mm", "50 mm"]'
 SPACE = 'frame = "updated"\n'
 MATTER = 'strength = { elastic = { E = "10 MPa", nu = 0.3 } }\n'
 WATER = "strength = { fluid = {} }\neos = { tait = { c0 = 10 } }\n"
+BOND = """enabled = true
+[[contact.pair]]
+bodies = ["a", "b"]
+bonded = true"""
 LOAD = '[load.push]\nbody = "a"\nside = "x_min"\npressure = "1 kPa"\n'
 
 
@@ -56,7 +60,7 @@ def test_a_case_without_them_is_one() -> None:
         (GRID, f'{GRID}box = {{ {BOX}, walls = "absorbing" }}\n', "walls of grid.box that absorb"),
         (GRID, f"{GRID}outflow_box = {{ {BOX} }}\n", "grid.outflow_box"),
         (GRID, f"{GRID}coarsening = {{ tiles = 9, times = 1 }}\n", "grid.coarsening"),
-        ("enabled = false", "", "contact with b, which has another frame, yet"),
+        ("enabled = false", BOND, "a is bonded to b, whose nodes lie in space"),
         ("enabled = false", "bonded = true", "contact.bonded, of bodies that share nodes"),
         ("enabled = false", "enabled = false\nbonded = true", "contact.bonded, of bodies that"),
         (RUN, f'{RUN}settle = {{ longest = "1 ms" }}\n', "run.settle yet"),

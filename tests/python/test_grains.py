@@ -269,7 +269,8 @@ def test_a_run_tells_the_grains_as_one(tmp_path: Path, capsys: Any) -> None:
     assert manifest.contact.bodies == 4
     line = next(x for x in capsys.readouterr().out.splitlines() if x.startswith("contact:"))
     assert re.match(
-        r"contact: 4 bodies, [\d,]+ overlapped nodes at the end, [\d,]+ at most, \d+ pairs, "
+        r"contact: 4 bodies, [\d,]+ overlapped nodes at the end, [\d,]+ at most, "
+        r"points of surfaces that touch: [\d,]+ at the end, [\d,]+ at most, \d+ pairs, "
         r"\d bodies at a node at most, [\d.]+ MiB, [\d.]+% of the step's time",
         line,
     )

@@ -106,7 +106,11 @@ def test_a_chain_of_discs_of_ten_cells_is_no_stiffer_than_the_law() -> None:
 def blocks(dimension: int, overlap: float, speed: float, fixed: bool = False) -> Case:
     """Return two blocks, one on the other, that overlap by so many cells and approach [m/s]."""
     low, high = [0.0] * dimension, [10e-3] * dimension
-    under = {"shape": {"box": {"lower": low, "upper": high}}, "material": "soft"}
+    under = {
+        "shape": {"box": {"lower": low, "upper": high}},
+        "material": "soft",
+        "frame": "updated",
+    }
     sides = [np.arange(3.25e-3, 8e-3, 0.5e-3)] * (dimension - 1)
     upwards = np.arange(10.25e-3, 15e-3, 0.5e-3) - overlap * 1e-3
     points = np.stack(np.meshgrid(*sides, upwards), axis=-1).reshape(-1, dimension)

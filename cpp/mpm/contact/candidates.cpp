@@ -106,15 +106,19 @@ void find_others(Contact<D>& contact, const TileGrid<D>& grid, Response response
 
 /// Every patch with every tile where it may have nodes, or particles that others meet.
 template <int D>
-void list_holders(const TileGrid<D>& grid, Response response, std::vector<TileHolder>& holders) {
+void list_holders(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies, bool leaves_surfaces,
+                  Response response, std::vector<TileHolder>& holders) {
   holders.clear();
   // Particles are nearer than they reach: with springs all tiles around see a patch.
   const Reach reach = may_spring(response) ? Reach{1, 1, 0.0} : grid.reach();
-  for (std::size_t p = 0; p < grid.patches.size(); ++p)
+  for (std::size_t p = 0; p < grid.patches.size(); ++p) {
+    const Body<D>& body = bodies[static_cast<std::size_t>(grid.patches[p].body)];
+    if (leaves_surfaces && body.kind != BodyKind::deformable) continue;
     for (int k = 0; k < Tile<D>::neighbours; ++k)
       // By tiles, not by the boxes of blocks: those change too often to sort this list each time
       // (decision 0013).
       if (reaches<D>(reach, k)) holders.emplace_back(grid.patches[p].body, p, k);
+  }
 }
 
 }  // namespace
@@ -132,6 +136,7 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
   contact.has_rigid = contact.has_free_rigid = false;
   // By what the case has: ranks may not know alike who is left.
   for (const Body<D>& body : bodies) {
+    if (contact.leaves_surfaces) break;
     contact.has_rigid = contact.has_rigid || !body.deforms();
     contact.has_free_rigid = contact.has_free_rigid || body.is_free_rigid();
   }
@@ -141,7 +146,7 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
     return Tile<D>::beside(grid.patches[static_cast<std::size_t>(h.patch)].tile,
                            static_cast<int>(h.neighbour));
   };
-  list_holders(grid, response, holders);
+  list_holders(grid, bodies, contact.leaves_surfaces, response, holders);
   std::sort(holders.begin(), holders.end(), [&](const TileHolder& x, const TileHolder& y) {
     const Index<D> tx = tile_of(x), ty = tile_of(y);
     if (tx != ty) return tile_less<D>(tx, ty);

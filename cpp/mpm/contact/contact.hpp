@@ -96,6 +96,8 @@ struct Contact {
   std::vector<ContactPart<D>> parts;
   PairCache cache;
   PairRecords records;
+  // Bodies on nodes of their own, and those that do not deform, meet by their surfaces, not here.
+  bool leaves_surfaces = false;
   bool has_rigid = false;       // some body does not deform
   bool has_free_rigid = false;  // and moves by what pushes it
   ContactCounts counts;

@@ -72,7 +72,7 @@ template <int D>
 ContactSums record_pairs(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                          const StepEnd& end, Threads& threads) {
   PairRecords& records = contact.records;
-  records.begin_step();
+  if (!contact.leaves_surfaces) records.begin_step();  // else what surfaces pass on is in it
   threads.for_each(contact.parts.size(),
                    [&](std::size_t p) { sum_part(contact, grid, bodies, contact.parts[p], end); });
   std::array<ExactSum, 5> sums;

@@ -48,8 +48,10 @@ struct PatchSums {
   PrescribedSums<D> prescribed;
   double load_first = 0.0, load_second = 0.0;        // the same of loads, body forces too [J]
   double dashpot_first = 0.0, dashpot_second = 0.0;  // the same of walls that absorb [J]
-  Work wall_push, wall_friction;  // the same of walls that touch: normal forces, friction [J]
-  double wall_stored = 0.0;       // in their springs, after the step [J]
+  // The same of walls that touch, and of surfaces that particles press: normal forces, friction
+  // [J].
+  Work wall_push, wall_friction;
+  double wall_stored = 0.0;  // in their springs, after the step [J]
   // Work of contact between surfaces: of springs, of friction, of what takes energy as bodies part
   // [J].
   double surface_push = 0.0, surface_rub = 0.0, restitution = 0.0;

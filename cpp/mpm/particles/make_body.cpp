@@ -160,21 +160,6 @@ ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid,
 }
 
 template <int D>
-void add_force_column(ParticlePool<D>& pool) {
-  if (pool.body_force < 0) pool.body_force = pool.columns.add("body_force", "m/s^2", D);
-}
-
-template <int D>
-void add_start_positions(ParticlePool<D>& pool) {
-  if (pool.start_position < 0) pool.start_position = pool.columns.add("start_position", "m", D);
-}
-
-template <int D>
-void add_set_back(ParticlePool<D>& pool) {
-  pool.set_back = pool.columns.add("set_back", "1", 1);
-}
-
-template <int D>
 Body<D> make_body(const std::string& name, const Material& material, const ParticlePool<D>& pool,
                   std::span<const double> positions, std::span<const double> velocities,
                   std::span<const double> volumes, std::optional<Share> share) {
@@ -246,8 +231,12 @@ void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>
   for (ParticlePool<D>& pool : pools)
     for (int a = 0; a < (pool.unseen < 0 ? 0 : D); ++a)
       std::fill_n(pool.unseen_velocity(a), pool.count(), Storage{0.0});
-  for (ParticlePool<D>& pool : pools)
+  for (ParticlePool<D>& pool : pools) {
     if (pool.set_back >= 0) std::fill_n(pool.columns.component(pool.set_back), pool.count(), 0.0);
+    if (pool.pressing.force < 0) continue;
+    for (int k = pool.pressing.force; k <= pool.pressing.set_back; ++k)
+      std::fill_n(pool.columns.component(k), pool.count(), 0.0);
+  }
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (!bodies[b].given) continue;
     ParticlePool<D>& pool = pool_of(bodies[b]);
@@ -269,12 +258,6 @@ void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>
 
 template ParticlePool<2> make_pool<2>(const Material&, const TileGrid<2>&, const TransferColumns&);
 template ParticlePool<3> make_pool<3>(const Material&, const TileGrid<3>&, const TransferColumns&);
-template void add_force_column<2>(ParticlePool<2>&);
-template void add_force_column<3>(ParticlePool<3>&);
-template void add_start_positions<2>(ParticlePool<2>&);
-template void add_start_positions<3>(ParticlePool<3>&);
-template void add_set_back<2>(ParticlePool<2>&);
-template void add_set_back<3>(ParticlePool<3>&);
 template Body<2> make_body<2>(const std::string&, const Material&, const ParticlePool<2>&,
                               std::span<const double>, std::span<const double>,
                               std::span<const double>, std::optional<Share>);

@@ -17,17 +17,6 @@ template <int D>
 ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid,
                           const TransferColumns& transfer = {});
 
-/// Declare the columns of particles with a body force, or that keep their places at the start;
-/// before the pool is filled.
-template <int D>
-void add_force_column(ParticlePool<D>& pool);
-template <int D>
-void add_start_positions(ParticlePool<D>& pool);
-
-/// Give a pool a column for how far surfaces are set back in contact; before the pool is filled.
-template <int D>
-void add_set_back(ParticlePool<D>& pool);
-
 /// A body of particles at `positions` (n, D) [m] with `velocities` (n, D) or (1, D) [m/s] and
 /// `volumes` (n,) or (1,) [m^3], with the pool of its material, which it does not enter yet. Throws
 /// std::invalid_argument with the body's name if they do not fit each other. A rank keeps its share

@@ -28,6 +28,17 @@ struct TransferColumns {
   bool reference = false;               // places in the body, and its deformation
 };
 
+/// Of particles whose nodes lie in space and that press surfaces (surfaces/pressing.hpp): the first
+/// component of each column; -1: there are none.
+struct PressingColumns {
+  int force = -1, arm = -1;  // of the springs [N], and the way to where it acts [m], D components
+  int slip = -1;             // of the spring of friction [m], D components
+  int stiffness = -1;        // of the springs, 0 where none is pressed [N/m]
+  int onset = -1;            // over which the spring begins [m]
+  int opposite = -1;         // 1 + number of the body that is pressed most, or 0
+  int set_back = -1;         // by which they overlapped at the start [m]
+};
+
 template <int D>
 struct ParticlePool {
   Columns columns;
@@ -46,6 +57,7 @@ struct ParticlePool {
   // And that may fail: 1 where neighbours of one that has failed have their contact points.
   int opened = -1;
   int set_back = -1;  // share of half its edge that the surface is set back in contact; -1: none
+  PressingColumns pressing;
   Matter matter = Matter::solid;     // of its material
   double sound_speed = 0.0;          // of its material at the start [m/s]
   double fastest = 0.0;              // wave and particle together, before the step [m/s]

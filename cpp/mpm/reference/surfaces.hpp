@@ -5,9 +5,8 @@
 #include <set>
 #include <utility>
 
+#include "mpm/reference/felt_surfaces.hpp"
 #include "mpm/reference/levelled.hpp"
-#include "mpm/reference/surface_points.hpp"
-#include "mpm/reference/surface_touch.hpp"
 
 namespace mpm::reference {
 
@@ -18,10 +17,11 @@ double friction_at_wall(const Step<D>& step, const Body<D>& body, Whom face) {
 }
 
 template <int D>
-struct Surfaces {
-  const Step<D>& step;
-  double e = 0.0;  // spacing of points [m]
-  std::vector<SurfaceBody<D>> bodies{};
+struct Surfaces : FeltSurfaces<D> {
+  using Base = FeltSurfaces<D>;
+  using Base::bodies, Base::e, Base::feel, Base::give_to_felt, Base::height_over, Base::other,
+      Base::overlap, Base::press, Base::step;
+
   std::map<std::pair<std::size_t, std::size_t>, SurfaceLaw> laws{};  // the lower number first
   SurfaceLaw law{};                                                  // of all others, and of faces
   std::vector<SurfaceTouch<D>> touches{};                            // of this step
@@ -32,7 +32,6 @@ struct Surfaces {
   std::map<Of, SurfaceMemory<D>> kept{};                             // of who touches
   std::map<std::pair<std::size_t, Whom>, double> left{};             // of N in the step before
   std::map<std::pair<Whom, Whom>, double> approaches{};              // so far, fastest [m/s]
-  Height<D> height{e};
 
   SurfaceLaw law_of(std::size_t a, std::size_t b) const {
     const auto found = laws.find(std::minmax(a, b));
@@ -105,22 +104,7 @@ struct Surfaces {
     return std::min({step.h * approach / c, 0.2 * step.h, 0.8 * e});
   }
 
-  double height_over(Whom face, double x) const {
-    const auto axis = static_cast<std::size_t>(axis_of(face));
-    return side_of(face) == 0 ? x : step.h * step.walls.cells[axis] - x;
-  }
-  SurfaceBody<D>& other(const SurfaceTouch<D>& t) {
-    return bodies[static_cast<std::size_t>(t.whom)];
-  }
-  const SurfaceBody<D>& other(const SurfaceTouch<D>& t) const {
-    return bodies[static_cast<std::size_t>(t.whom)];
-  }
   ContactPoint<D>& point(const SurfaceTouch<D>& t) { return bodies[t.body].points[t.point]; }
-
-  /// o = e - b - e zeta or e / 2 - b - z.
-  double overlap(const SurfaceTouch<D>& t) const {
-    return (is_wall(t.whom) ? 0.5 * e : e) - t.b - t.z;
-  }
 
   /// f(touch) for those that may have begun, of the widest w.
   template <class F>
@@ -158,73 +142,16 @@ struct Surfaces {
       }
   }
 
-  /// Which points of the other body a point and its images feel, and how high it is over them. Is
-  /// there any? Of its own body those that are more than four cells off in it: it may be folded.
+  /// That of a point: of its own body it feels what is more than four cells off in it, which may
+  /// be folded.
   bool feel(SurfaceTouch<D>& t) const {
     const ContactPoint<D>& p = bodies[t.body].points[t.point];
     const bool itself = t.whom == static_cast<Whom>(t.body);
-    std::map<int, double> of_face;
-    for_each_mirror(step.h, step.walls_of(other(t).body()), [&](const Mirror<D>& mirror) {
-      for (std::size_t q = 0; q < other(t).points.size(); ++q) {
-        const ContactPoint<D>& c = other(t).points[q];
-        if (!(c.A_felt > 0.0) || (itself && !(norm(c.X - p.X) > 4.0 * step.h))) continue;
-        const double weight = height.weight(square(c.x, mirror.place(p.x)));
-        if (!(weight > 0.0)) continue;
-        t.felt.push_back({q, mirror, c.A_felt / std::pow(e, D - 1) * weight});
-        of_face[c.face] += t.felt.back().share;
-      }
+    return feel(t, p.x, [&](const ContactPoint<D>& c) {
+      return itself && !(norm(c.X - p.X) > 4.0 * step.h);
     });
-    if (of_face.empty()) return false;
-    const double S = of_all_faces(of_face);
-    for (Felt<D>& felt : t.felt)  // dS/dS_f over S
-      felt.share *= std::pow(of_face.at(other(t).points[felt.q].face) / S, 3) / S;
-    t.z = e * height.zeta(S);
-    return true;
   }
-  /// The energy of the spring of a touch, of the places of p and of the points that it feels, (S3).
-  template <class T>
-  T energy(const SurfaceTouch<D>& t, const Vec<T, D>& p, const std::vector<Vec<T, D>>& q) const {
-    if (is_wall(t.whom)) {
-      const T& x = p[axis_of(t.whom)];
-      const T z = side_of(t.whom) == 0 ? x : height_over(t.whom, 0.0) - x;
-      return t.k * stored<T>(0.5 * e - t.b - z, t.w);
-    }
-    std::map<int, T> sums;
-    for (std::size_t j = 0; j < q.size(); ++j) {
-      const ContactPoint<D>& c = other(t).points[t.felt[j].q];
-      sums[c.face] +=
-          c.A_felt / std::pow(e, D - 1) * height.weight(square(q[j], t.felt[j].mirror.place(p)));
-    }
-    return t.k * stored<T>(e - t.b - e * height.zeta(of_all_faces(sums)), t.w);
-  }
-
-  /// - dE/dx to p and to all that it feels. Of E(x + i d) the imaginary part is d dE/dx, exact with
-  /// a d of which the square is nothing (Squire & Trapp 1998). Returns E.
-  double press(SurfaceTouch<D>& t) {
-    using Complex = std::complex<double>;
-    const auto complex = [](const Vec<double, D>& x) {
-      Vec<Complex, D> z;
-      for (int a = 0; a < D; ++a) z[a] = x[a];
-      return z;
-    };
-    Vec<Complex, D> p = complex(point(t).x);
-    std::vector<Vec<Complex, D>> q;
-    q.reserve(t.felt.size());
-    for (const Felt<D>& felt : t.felt) q.push_back(complex(other(t).points[felt.q].x));
-    const auto force_at = [&](Vec<Complex, D>& x) {
-      const double d = 1e-30 * e;
-      Vec<double, D> force;
-      for (int a = 0; a < D; ++a) {
-        x[a].imag(d);
-        force[a] = -std::imag(energy(t, p, q)) / d;
-        x[a].imag(0.0);
-      }
-      return force;
-    };
-    t.push = force_at(p);
-    for (std::size_t j = 0; j < q.size(); ++j) t.felt[j].push = force_at(q[j]);
-    return std::real(energy(t, p, q));
-  }
+  double press(SurfaceTouch<D>& t) { return press(t, point(t).x); }
 
   /// The dashpot (S6) of a point that slides with u [m/s]: all that presses by so much more.
   void damp(SurfaceTouch<D>& t, const Vec<double, D>& u) {
@@ -249,14 +176,8 @@ struct Surfaces {
     SurfaceBody<D>& own = bodies[t.body];
     own.push(point(t), t.push);
     if (t.rubs) own.rub(point(t), t.place, t.rub);
-    for (const Felt<D>& felt : t.felt) {
-      const ContactPoint<D>& c = other(t).points[felt.q];
-      other(t).push(c, felt.push);
-      if (t.rubs)
-        other(t).rub(c, felt.mirror.place(t.place), felt.mirror.vector(-felt.share * t.rub));
-    }
+    give_to_felt(t);
   }
-
   /// The coefficient, times what of the normal force the two felt in the step before.
   double friction_of(const SurfaceTouch<D>& t) const {
     const auto b = static_cast<std::size_t>(t.whom);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "mpm/particles/add_columns.hpp"
 #include "mpm/particles/make_body.hpp"
 #include "mpm/run/start_in_body.hpp"
 #include "mpm/step/transfer/transfer.hpp"

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "mpm/comm/all_sums.hpp"
+#include "mpm/particles/add_columns.hpp"
 #include "mpm/particles/make_body.hpp"
 
 namespace mpm {

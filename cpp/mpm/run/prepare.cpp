@@ -17,6 +17,7 @@
 #include "mpm/run/surfaces.hpp"
 #include "mpm/run/time_step.hpp"
 #include "mpm/run/watch.hpp"
+#include "mpm/surfaces/pressing.hpp"
 
 namespace mpm {
 namespace {
@@ -93,6 +94,9 @@ void prepare(Simulation<D>& simulation) {
   // A body alone may touch itself.
   domain.surfaces.meet = domain.contact_settings.enabled && !domain.contact_settings.bonded &&
                          !domain.surfaces.given.empty();
+  domain.surfaces.pressed_by =
+      static_cast<int>(std::ranges::count(domain.bodies, BodyKind::deformable, &Body<D>::kind));
+  domain.contact.leaves_surfaces = domain.surfaces.meet;
   domain.grid.partition.shares_tiles = domain.has_contact();
   add_contact_columns(domain);
   find_held_bodies(simulation);

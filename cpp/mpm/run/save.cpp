@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* other_version = "it was made by another version of mpm3dpp";
 constexpr const char* other_case = "it was made from another case";
-constexpr std::int64_t format = 26;  // raised whenever exchange() or what a value means changes
+constexpr std::int64_t format = 27;  // raised whenever exchange() or what a value means changes
 
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {
@@ -105,7 +105,7 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
     find_followers(domain, std::vector<bool>(domain.bodies.size(), false));
   exchange_kept_spins(domain, stream);
   exchange_surfaces(domain, stream);
-  if (domain.surfaces.meet) {
+  if (domain.surfaces.meet && !domain.has_contact()) {
     domain.contact.records.exchange(stream);
     if (stream.restores())
       domain.contact.records.check_restored(domain.bodies.size(), stream.comm().rank() == 0);

@@ -3,13 +3,19 @@
 #include "mpm/contact/find_touches.hpp"
 #include "mpm/contact/guests.hpp"
 #include "mpm/contact/set_back.hpp"
-#include "mpm/particles/make_body.hpp"
+#include "mpm/particles/add_columns.hpp"
+#include "mpm/surfaces/pressing.hpp"
 #include "mpm/walls/set_back.hpp"
 
 namespace mpm {
 
 template <int D>
 void add_contact_columns(Domain<D>& domain) {
+  if (particles_press(domain))
+    for (const Body<D>& body : domain.bodies) {
+      ParticlePool<D>& pool = domain.pool_of(body);
+      if (body.kind == BodyKind::deformable && pool.pressing.force < 0) add_pressing(pool);
+    }
   if (!domain.has_springs() && !domain.grid.has_wall_springs) return;
   for (ParticlePool<D>& pool : domain.pools) add_set_back(pool);
 }

@@ -174,12 +174,6 @@ void check_in_body(const Simulation<D>& simulation) {
   const Settings& s = simulation.settings;
   check_frame(s.grid.basis != basis_id<Linear>,
               "grid.basis = \"linear\", whose gradients jump: give \"quadratic_bspline\"");
-  check_frame(domain.bodies.size() == 1 || !s.contact.enabled ||
-                  std::ranges::none_of(
-                      domain.bodies,
-                      [](const Body<D>& body) { return body.deforms() && !body.keeps_nodes(); }),
-              "contact with bodies that have another yet: give all the same, or "
-              "contact.enabled = false");
   check_frame(domain.bodies.size() == 1 || !s.contact.bonded,
               "contact.bonded: give bonded = true in [[contact.pair]], which holds what touches at "
               "the start");

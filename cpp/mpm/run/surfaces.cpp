@@ -12,6 +12,7 @@
 #include "mpm/surfaces/overlaps.hpp"
 #include "mpm/surfaces/parts.hpp"
 #include "mpm/surfaces/press.hpp"
+#include "mpm/surfaces/pressing.hpp"
 #include "mpm/surfaces/renew_points.hpp"
 
 namespace mpm {
@@ -62,6 +63,7 @@ void start_surfaces(Domain<D>& domain) {
   level_faces(domain);
   bound_onsets(domain);
   set_back_onsets(domain);
+  set_back_pressing(domain);
   domain.surfaces.given = {};
   domain.surfaces.given_of = {};
 }
@@ -252,6 +254,7 @@ void exchange_state(const Domain<D>& domain, Surfaces<D>& surfaces, StateStream&
     if (part.as_one)
       stream.array(std::span(surfaces.places).subspan(part.first_point, part.point_count));
   stream(surfaces.stored_push, surfaces.stored_rub, surfaces.touching, surfaces.touching_max);
+  stream(surfaces.pressed_walls.faces, surfaces.pressed_walls.moment, surfaces.pressed_walls.any);
   stream(surfaces.deepest.body, surfaces.deepest.overlap, surfaces.deepest.place);
   if (stream.restores()) surfaces.places_of_lists.resize(surfaces.points.size());
   if (surfaces.meet) {

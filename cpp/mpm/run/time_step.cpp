@@ -17,7 +17,7 @@ namespace {
 // and is as strong as matter: at half of it hits of flat faces keep their energy to .5 %.
 constexpr double most_closing = 0.5;
 
-// Where all nodes lie in bodies a step is held, as steps that follow waves, which are faster in
+// Where nodes lie in bodies a step is held, as steps that follow waves, which are faster in
 // what is squeezed, make energy of vibrations: by how much it may be longer than what `cfl` asks
 // for before it is shortened, how much longer that must be until the step is made longer, and how
 // often it is looked at, some periods of coarse bodies.
@@ -154,12 +154,7 @@ std::string choose_time_step(Simulation<D>& simulation) {
 
 template <int D>
 bool holds_time_step(const Simulation<D>& simulation) {
-  const Domain<D>& domain = simulation.domain;
-  const auto may_be_held = [](const Body<D>& body) {
-    return body.keeps_nodes() || !body.deforms();
-  };
-  return !simulation.settings.run.time_step && has_kept_nodes(domain) &&
-         std::ranges::all_of(domain.bodies, may_be_held);
+  return !simulation.settings.run.time_step && has_kept_nodes(simulation.domain);
 }
 
 template <int D>

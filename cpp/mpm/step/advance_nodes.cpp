@@ -6,6 +6,7 @@
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stage_functions.hpp"
 #include "mpm/surfaces/parts.hpp"
+#include "mpm/surfaces/pressing.hpp"
 #include "mpm/walls/absorb.hpp"
 #include "mpm/walls/reactions.hpp"
 #include "mpm/walls/touch.hpp"
@@ -221,6 +222,7 @@ void finish(Domain<D>& domain, std::size_t p, const NodeWork& done) {
     friction = work_of_faces(block, own, dt, false);
   }
   const Work mirrored = work_of_mirrored_weight(domain, patch, block);
+  const bool presses = domain.pool_of(patch).pressing.force >= 0;
   // Particles near a wall read nodes beyond it: positions by the velocity, eq. (16), velocities
   // by the increment, eq. (17).
   reflect_at_walls(grid, patch, block, velocity_at);
@@ -230,6 +232,11 @@ void finish(Domain<D>& domain, std::size_t p, const NodeWork& done) {
   // are both turned do the same work as those of the image, which has the force.
   if (domain.has_loads()) loads = work_of_loads(domain, p);
   if (domain.has_body_forces()) loads += work_of_body_force(domain, p);
+  if (presses) {
+    const PressingWork work = work_of_pressing(domain, p);
+    push += work.push;
+    friction += work.rub;
+  }
   // Nodes in bodies go with the new velocities all the step, others with the mean of both: what
   // is a half of the increments' work for these is all of it.
   const double halves = patch.keeps ? 2.0 : 1.0;

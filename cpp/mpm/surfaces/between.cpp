@@ -33,6 +33,23 @@ ActingBetween<D>& last_of(std::vector<BetweenByPart<D>>& all, std::uint64_t plac
   return all.back().pair;
 }
 
+/// What passes by a touch of a body at a place.
+template <int D, class Touch>
+void add_touch(const Touch& touch, int body, const Vec<double, D>& place, std::uint64_t order,
+               std::vector<BetweenByPart<D>>& all) {
+  const bool first = is_wall(touch.opposite) || body < touch.opposite;
+  const int a = first ? body : touch.opposite, b = first ? touch.opposite : body;
+  ActingBetween<D>& pair = last_of(all, order, a, b);
+  const double sign = first ? 1.0 : -1.0, size = norm(touch.push);
+  pair.on_first += sign * (touch.push + touch.rub);
+  pair.rub_work += touch.rub_work;
+  pair.push += sign * touch.push;
+  pair.middle += size * place;
+  pair.size += size;
+  pair.stiffness += touch.stiffness;
+  keep_deepest(pair, touch.overlap, -sign * normalised(touch.push), place);
+}
+
 /// What passes by the touches of a part.
 template <int D>
 void add_part(const Domain<D>& domain, std::size_t number, std::vector<BetweenByPart<D>>& all) {
@@ -42,18 +59,19 @@ void add_part(const Domain<D>& domain, std::size_t number, std::vector<BetweenBy
   for (const SurfaceTouch<D>& touch : part.touches) {
     if (!(touch.pressed_in > 0.0) || touch.opposite == part.body) continue;
     if (is_wall(touch.opposite) && !faces) continue;
-    const bool first = is_wall(touch.opposite) || part.body < touch.opposite;
-    const int a = first ? part.body : touch.opposite, b = first ? touch.opposite : part.body;
-    ActingBetween<D>& pair = last_of(all, number, a, b);
-    const double sign = first ? 1.0 : -1.0, size = norm(touch.push);
-    const Vec<double, D> place = surfaces.places[touch.point] + touch.arm;
-    pair.on_first += sign * (touch.push + touch.rub);
-    pair.rub_work += touch.rub_work;
-    pair.push += sign * touch.push;
-    pair.middle += size * place;
-    pair.size += size;
-    pair.stiffness += touch.stiffness;
-    keep_deepest(pair, touch.overlap, -sign * normalised(touch.push), place);
+    add_touch(touch, part.body, surfaces.places[touch.point] + touch.arm, number, all);
+  }
+}
+
+/// What particles and surfaces pass on to each other.
+template <int D>
+void add_of_particles(const Domain<D>& domain, std::vector<BetweenByPart<D>>& all) {
+  for (const PressingPatch<D>& of : domain.surfaces.pressing) {
+    const Patch<D>& patch = domain.grid.patches[of.patch];
+    const ParticlePool<D>& pool = domain.pool_of(patch);
+    for (const PressingTouch<D>& touch : of.touches)
+      if (touch.pressed_in > 0.0)
+        add_touch(touch, patch.body, pool.position_of(touch.row) + touch.arm, of.order, all);
   }
 }
 
@@ -83,6 +101,7 @@ void sum_between(Domain<D>& domain) {
   for (std::size_t k = 0; k < surfaces.parts.size(); ++k)
     if (!surfaces.parts[k].foreign) add_part(domain, k, parts);
   add_own_bonds(surfaces, parts);
+  add_of_particles(domain, parts);
   entries_of_all(*domain.grid.partition.comm, parts);
   std::ranges::sort(parts, {}, [](const BetweenByPart<D>& one) {
     return std::tuple(one.pair.a, one.pair.b, one.place, one.entry);

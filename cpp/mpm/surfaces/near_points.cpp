@@ -5,6 +5,7 @@
 #include "mpm/surfaces/folds.hpp"
 #include "mpm/surfaces/parts.hpp"
 #include "mpm/surfaces/point_boxes.hpp"
+#include "mpm/surfaces/pressing.hpp"
 #include "mpm/surfaces/tell_others.hpp"
 
 namespace mpm {
@@ -246,6 +247,7 @@ void make_near_lists(Domain<D>& domain) {
   for_each_own_part(
       domain, [&](SurfacePart<D>& part) { find_near(domain, boxes, folded, in_bodies, part); });
   surfaces.awake_until = 0.0;
+  if (particles_press(domain)) list_points_by_tile(domain);
 }
 
 template <int D>
@@ -257,7 +259,7 @@ void find_near_points(Domain<D>& domain) {
   surfaces.age_of_lists += domain.time_step;
   const bool anew = !known || !(surfaces.moved < 0.5 * margin * e);
   const bool measures = known && (anew || domain.step % steps_between_speeds == 0);
-  if (anew || measures) tell_all_places(domain);
+  if (anew || measures || particles_press(domain)) tell_all_places(domain);
   // What is pressed slows down, and longer steps at the largest forces would make energy: the step
   // of a hit lasts until it is over.
   const bool pressed = surfaces.deepest.overlap > pressed_from * e;

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "mpm/surfaces/across_walls.hpp"
 #include "mpm/surfaces/approaches.hpp"
-#include "mpm/surfaces/as_one.hpp"
+#include "mpm/surfaces/felt_motion.hpp"
 #include "mpm/surfaces/law.hpp"
 #include "mpm/surfaces/levelled.hpp"
-#include "mpm/surfaces/mirrored.hpp"
 #include "mpm/surfaces/overlaps.hpp"
 #include "mpm/surfaces/parts.hpp"
 #include "mpm/surfaces/restitution.hpp"
@@ -31,35 +31,13 @@ double friction_with(const Domain<D>& domain, int body, Opposite opposite) {
       .friction;
 }
 
-/// How fast the body of a point moves at a place, as find_motions() has found.
-template <int D>
-Vec<double, D> velocity_of_point(const Domain<D>& domain, std::uint32_t point,
-                                 const PlaceAtHost<D>& reach, const Vec<double, D>& place) {
-  const Surfaces<D>& surfaces = domain.surfaces;
-  const std::uint32_t host = surfaces.points[point].host;
-  const SurfacePart<D>& part = surfaces.parts[surfaces.hosts[host].part];
-  if (part.foreign && !part.as_one) return host_elsewhere(surfaces, host).motion.at(reach);
-  if (!part.as_one) return surfaces.in_touch[surfaces.place_of_motion[host] - 1].motion.at(reach);
-  const Vector3 v = motion_as_one(domain, part.body).velocity_at(in_space<D>(place));
-  Vec<double, D> velocity;
-  for (int a = 0; a < D; ++a) velocity[a] = v[a];
-  return velocity;
-}
-
 /// The velocity of a point's body against the other's at the place of contact.
 template <int D>
 Vec<double, D> slip_velocity(const Domain<D>& domain, const SurfacePart<D>& part,
                              const SurfaceTouch<D>& touch) {
   const Vec<double, D> place = domain.surfaces.places[touch.point] + touch.arm;
-  Vec<double, D> u = velocity_of_point(domain, touch.point, touch.reach, place);
-  for (std::uint32_t k = touch.first_felt; k < touch.first_felt + touch.felt_count; ++k) {
-    const FeltPoint<D>& felt = part.felt[k];
-    const Vec<double, D> there = mirrored_place(domain.grid, felt.mirrors, place);
-    u -= felt.share *
-         mirrored(felt.mirrors, velocity_of_point(domain, felt.point,
-                                                  reach_of(domain, felt.point, there), there));
-  }
-  return u;
+  return velocity_of_point(domain, touch.point, touch.reach, place) -
+         velocity_of_felt<D>(domain, felt_by(touch, part.felt), place);
 }
 
 /// How fast the surfaces of a touch approach each other that slip with u on each other [m/s].
@@ -105,29 +83,6 @@ Friction<D> slide(const Domain<D>& domain, const SurfacePart<D>& part, SurfaceTo
   return friction_with(norm(touch.push));
 }
 
-/// What passes to a point from the image of another is given by the walls.
-template <int D>
-void add_across_walls(const Domain<D>& domain, const SurfaceTouch<D>& touch,
-                      const FeltPoint<D>& felt, SurfacePart<D>& part) {
-  const Surfaces<D>& surfaces = domain.surfaces;
-  const Vec<double, D> place = surfaces.places[touch.point] + touch.arm,
-                       there = mirrored_place(domain.grid, felt.mirrors, place);
-  const Vec<double, D> push = touch.stiffness * touch.pressed_in * felt.slope,
-                       rub = felt.share * touch.rub;
-  const Vec<double, D> on_point = mirrored(felt.mirrors, push);
-  const Vec<double, D> back = mirrored(felt.mirrors, rub);
-  part.at_walls = true;
-  for (int a = 0; a < D; ++a) {
-    if (!is_mirrored(felt.mirrors, a, D)) continue;
-    const int side = felt.mirrors >> a & 1u ? 0 : 1;
-    part.by_walls.add(1u << (2 * a + side), a, on_point[a] - push[a] + rub[a] - back[a]);
-  }
-  part.moment_by_walls += cross(in_space<D>(surfaces.places[touch.point]), in_space<D>(on_point)) -
-                          cross(in_space<D>(surfaces.places[felt.point]), in_space<D>(push)) +
-                          cross(in_space<D>(place), in_space<D>(rub)) -
-                          cross(in_space<D>(there), in_space<D>(back));
-}
-
 }  // namespace
 
 template <int D>
@@ -147,6 +102,8 @@ void find_motions(Domain<D>& domain) {
     for (const SurfaceTouch<D>& touch : part.touches) needs(touch.point);
     for (const FeltPoint<D>& felt : part.felt) needs(felt.point);
   }
+  for (const PressingPatch<D>& of : surfaces.pressing)
+    for (const FeltPoint<D>& felt : of.felt) needs(felt.point);
   surfaces.in_touch.resize(surfaces.moving.size());
   domain.threads.for_each(surfaces.moving.size(), [&](std::size_t k) {
     const Host<D>& host = surfaces.hosts[surfaces.moving[k]];
@@ -226,7 +183,8 @@ void press_part(Domain<D>& domain, SurfacePart<D>& part) {
     part.kept_next.push_back({touch.point, touch.opposite, memory});
     if (!is_wall(touch.opposite)) {
       for (std::uint32_t k = touch.first_felt; k < touch.first_felt + touch.felt_count; ++k)
-        if (part.felt[k].mirrors != 0) add_across_walls(domain, touch, part.felt[k], part);
+        if (part.felt[k].mirrors != 0)
+          add_across_walls(domain, surfaces.places[touch.point], touch, part.felt[k], part);
       continue;
     }
     part.at_walls = true;

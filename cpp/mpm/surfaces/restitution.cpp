@@ -74,7 +74,11 @@ void add_restitution(Domain<D>& domain) {
   if (!restitution_takes(domain.contact_settings)) return;
   Surfaces<D>& surfaces = domain.surfaces;
   const double dt = domain.time_step;
+  const auto flows = [&](Opposite number) {
+    return !is_wall(number) && domain.body_at(number).kind == BodyKind::deformable;
+  };
   for (ActingBetween<D>& pair : surfaces.between) {
+    if (flows(pair.a) || flows(pair.b)) continue;  // what it loses is its matter's own
     const PairLaw law = law_between(domain, pair);
     const double light = lightness(domain, pair.a) + lightness(domain, pair.b);
     const double e = law.restitution, push = norm(pair.push);

@@ -9,6 +9,7 @@
 //   overlaps.hpp        which overlap a face of the box or another body, and how deep (felt.hpp)
 //   bonds.hpp           what is bonded pulls
 //   press.hpp           springs of an energy, and Coulomb friction that remembers (law.hpp)
+//   pressing.hpp        particles of what flows, whose nodes lie in space, likewise
 //   between.hpp         what pairs of bodies come to; restitution.hpp: what these do not get back
 //   touch_surfaces.cpp  (read it second) what comes to hosts, and to their nodes in the next step
 // Beside these levelled.hpp lets faces lie flat that are drawn touching, mirrored.hpp has images
@@ -25,7 +26,7 @@
 #include "mpm/math/tensor.hpp"
 #include "mpm/surfaces/acting_on_bodies.hpp"
 #include "mpm/surfaces/other_ranks.hpp"
-#include "mpm/walls/face_impulses.hpp"
+#include "mpm/surfaces/pressing_touches.hpp"
 
 namespace mpm {
 
@@ -55,13 +56,6 @@ struct ContactPoint {
   double area = 0.0;       // that it pushes for [m^2; in 2D m times 1 m]
   double felt_area = 0.0;  // by which others feel it [the same]
 };
-
-/// Whom a point touches: a body by its number, a face of the box by -1 - (2 axis + side).
-using Opposite = std::int32_t;
-constexpr Opposite opposite_wall(int axis, int side) { return -1 - (2 * axis + side); }
-constexpr bool is_wall(Opposite opposite) { return opposite < 0; }
-constexpr int axis_of_wall(Opposite opposite) { return (-1 - opposite) / 2; }
-constexpr int side_of_wall(Opposite opposite) { return (-1 - opposite) % 2; }
 
 /// What a contact point keeps of its contact with an opposite.
 template <class Value>
@@ -127,14 +121,6 @@ struct SurfaceTouch {
   std::uint32_t first_felt = 0, felt_count = 0;
 };
 
-/// A point of another body that a point feels.
-template <int D>
-struct FeltPoint {
-  std::uint32_t point = 0;
-  double share = 0.0;        // of the weights of all that are felt
-  Vec<double, D> slope;      // of the overlap with this point's place
-  std::uint8_t mirrors = 0;  // its image is felt that these walls make (mirrored.hpp)
-};
 /// Points of a face of another body that may be near to a point.
 struct NearPoints {
   std::uint32_t point = 0;
@@ -206,6 +192,7 @@ struct Surfaces {
   std::vector<std::uint32_t> given_of;  // of each point its place among these, until then
   double spacing = 0.0;  // e: the points of all bodies lie half of it behind their surfaces [m]
   bool meet = false;     // do bodies touch each other by them?
+  int pressed_by = 0;    // bodies that deform and whose nodes lie in space
 
   std::vector<SurfacePart<D>> parts;  // by body, then by tile
   OtherRanks<D> others;
@@ -238,6 +225,10 @@ struct Surfaces {
   std::vector<DeepestOfRank<D>> deepest_of_all;  // scratch: of the ranks
   std::vector<double> farthest;                  // scratch: of each part, the square of a way [m^2]
   double stored_push = 0.0, stored_rub = 0.0;    // in the springs after the last step [J]
+
+  std::vector<PointInTile<D>> by_tile;     // points that may be felt, where lists were made
+  std::vector<PressingPatch<D>> pressing;  // particles in touch, after the last step
+  PressedWalls<D> pressed_walls;
 
   DeepestPoint<D> deepest;
   std::size_t touching = 0, touching_max = 0;  // points that are pushed, now and since the start

@@ -141,6 +141,37 @@ void tell_awake(Domain<D>& domain) {
 }
 
 template <int D>
+void ask_for_pressed(Domain<D>& domain) {
+  Comm& comm = *domain.grid.partition.comm;
+  Surfaces<D>& surfaces = domain.surfaces;
+  if (comm.alone()) return;
+  std::vector<HostElsewhere<D>>& known = surfaces.others.hosts;
+  std::vector<SurfacePartner> partners;
+  for (const PressingPatch<D>& of : surfaces.pressing)
+    for (const FeltPoint<D>& felt : of.felt) {
+      const SurfacePart<D>& part = part_of_point(surfaces, felt.point);
+      const std::uint32_t host = surfaces.points[felt.point].host;
+      if (!part.foreign || part.as_one) continue;
+      if (std::ranges::binary_search(known, host, {}, &HostElsewhere<D>::host)) continue;
+      partner_with(partners, part.rank).take_hosts.push_back(host);
+    }
+  Mail asked, told;
+  for (SurfacePartner& partner : partners) {
+    sort_once(partner.take_hosts);
+    write_all<std::uint32_t>(letter_to(asked, partner.rank), partner.take_hosts);
+  }
+  comm.exchange(asked);
+  for (const Letter& letter : asked.in)
+    for (Reader reader(letter); !reader.done();)
+      write(letter_to(told, letter.rank), state_of(domain, reader.template read<std::uint32_t>()));
+  comm.exchange(told);
+  for (const Letter& letter : told.in)
+    for (Reader reader(letter); !reader.done();)
+      known.push_back(reader.template read<HostElsewhere<D>>());
+  std::ranges::sort(known, {}, &HostElsewhere<D>::host);
+}
+
+template <int D>
 void tell_motions(Domain<D>& domain) {
   Comm& comm = *domain.grid.partition.comm;
   if (comm.alone()) return;
@@ -157,6 +188,8 @@ template void ask_for_awake<2>(Domain<2>&);
 template void ask_for_awake<3>(Domain<3>&);
 template void tell_awake<2>(Domain<2>&);
 template void tell_awake<3>(Domain<3>&);
+template void ask_for_pressed<2>(Domain<2>&);
+template void ask_for_pressed<3>(Domain<3>&);
 template void tell_motions<2>(Domain<2>&);
 template void tell_motions<3>(Domain<3>&);
 

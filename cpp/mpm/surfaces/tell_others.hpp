@@ -16,6 +16,10 @@ void ask_for_awake(Domain<D>& domain);
 template <int D>
 void tell_awake(Domain<D>& domain);
 
+/// How the hosts move that particles press and nobody has told of.
+template <int D>
+void ask_for_pressed(Domain<D>& domain);
+
 /// How bodies turn and move as wholes, to all: restitution asks for it.
 template <int D>
 void tell_motions(Domain<D>& domain);

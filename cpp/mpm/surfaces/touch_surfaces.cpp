@@ -1,7 +1,9 @@
 // What the surfaces of bodies do to each other at the end of a step, and to the bodies in the next.
 #include <array>
+#include <numeric>
 
 #include "mpm/step/kept_nodes.hpp"
+#include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stage_functions.hpp"
 #include "mpm/surfaces/acting.hpp"
 #include "mpm/surfaces/approaches.hpp"
@@ -13,6 +15,7 @@
 #include "mpm/surfaces/overlaps.hpp"
 #include "mpm/surfaces/parts.hpp"
 #include "mpm/surfaces/press.hpp"
+#include "mpm/surfaces/pressing.hpp"
 #include "mpm/surfaces/restitution.hpp"
 #include "mpm/surfaces/tell_others.hpp"
 
@@ -71,6 +74,7 @@ std::vector<GivenToPoint<D>> given_by_others(Domain<D>& domain, const Acting<D>&
   }
   for_each_own_bond(
       surfaces, [&](const Bond<D>& bond, std::uint64_t order) { send(other_end(bond, order)); });
+  for (const PressingPatch<D>& of : surfaces.pressing) for_each_given(domain, of, send);
   comm.exchange(mail);
   for (const Letter& letter : mail.in)
     for (Reader reader(letter); !reader.done();)
@@ -98,6 +102,26 @@ std::size_t give_touches(Acting<D>& acting, const Domain<D>& domain, std::size_t
   return touching;
 }
 
+/// What particles give to surfaces, by tiles, whichever ranks have these. Returns how many touch.
+template <int D, class F>
+std::size_t give_pressing(Acting<D>& acting, const Domain<D>& domain, F&& give_until) {
+  const std::vector<PressingPatch<D>>& all = domain.surfaces.pressing;
+  std::vector<std::uint32_t> sorted(all.size());
+  std::iota(sorted.begin(), sorted.end(), 0u);
+  std::ranges::stable_sort(sorted, {}, [&](std::uint32_t k) { return all[k].order; });
+  std::size_t touching = 0;
+  for (const std::uint32_t k : sorted) {
+    if (all[k].touches.empty()) continue;
+    give_until(all[k].order - 1);
+    for_each_given(domain, all[k], [&](const GivenToPoint<D>& given) {
+      if (!acting.is_elsewhere(given.point)) acting.give(given);
+    });
+    touching += static_cast<std::size_t>(std::ranges::count_if(
+        all[k].touches, [](const PressingTouch<D>& touch) { return touch.pressed_in > 0.0; }));
+  }
+  return touching;
+}
+
 /// What is stored and how many touch, of all ranks, and what is deepest.
 template <int D>
 void sum_up(Domain<D>& domain, std::size_t touching) {
@@ -114,6 +138,16 @@ void sum_up(Domain<D>& domain, std::size_t touching) {
       if (touch.pressed_in > 0.0 && !is_wall(touch.opposite) &&
           touch.overlap > deepest.point.overlap)
         deepest = {k, {part.body, touch.overlap, surfaces.places[touch.point] + touch.arm}};
+  }
+  for (const PressingPatch<D>& of : surfaces.pressing) {
+    stored[0].add(of.stored_push);
+    stored[1].add(of.stored_rub);
+    const Patch<D>& patch = domain.grid.patches[of.patch];
+    for (const PressingTouch<D>& touch : of.touches)
+      if (touch.pressed_in > 0.0 && touch.sunk > deepest.point.overlap)
+        deepest = {
+            of.order,
+            {patch.body, touch.sunk, domain.pool_of(patch).position_of(touch.row) + touch.arm}};
   }
   for (const Bond<D>& bond : surfaces.bonds)
     if (!part_of_point(surfaces, bond.first).foreign)
@@ -157,6 +191,7 @@ void give_to_hosts(Domain<D>& domain) {
     const GivenToPoint<D> other = other_end(bond, order);
     if (!acting.is_elsewhere(other.point)) acting.give(other);
   });
+  touching += give_pressing(acting, domain, give_until);
   give_until(std::numeric_limits<std::uint64_t>::max());
   acting.finish();
   sum_up(domain, touching);
@@ -189,6 +224,17 @@ void add_by_walls(Domain<D>& domain, const SurfacePart<D>& part, std::size_t pat
   domain.face_parts[patch].add(part.by_walls, acts);
 }
 
+/// What particles were pushed with goes to their nodes, and what walls took part in.
+template <int D>
+void load_by_all_particles(Domain<D>& domain) {
+  for_each_patch(domain, deformable, [&](std::size_t p) { load_by_particles(domain, p); });
+  const PressedWalls<D>& walls = domain.surfaces.pressed_walls;
+  if (!walls.any || domain.sums.empty()) return;
+  const double acts = time_of_forces(domain, true);
+  domain.sums[0].angular.walls += acts * walls.moment;
+  domain.face_parts[0].add(walls.faces, acts);
+}
+
 }  // namespace
 
 template <int D>
@@ -203,9 +249,13 @@ void touch_surfaces(Domain<D>& domain) {
   if (surfaces.meet) find_near_points(domain);
   bound_onsets(domain);
   for_each_own_part(domain, [&](SurfacePart<D>& part) { find_overlaps(domain, part); });
+  const bool pressed = particles_press(domain);
+  if (pressed) find_pressing(domain);
+  if (pressed) ask_for_pressed(domain);
   pull_bonds(domain);
   find_motions(domain);
   for_each_own_part(domain, [&](SurfacePart<D>& part) { press_part(domain, part); });
+  if (pressed) press_particles(domain);
   learn_approaches(domain);
   give_to_hosts(domain);
   sum_between(domain);
@@ -227,6 +277,7 @@ void load_by_surfaces(Domain<D>& domain) {
     }
     if (part.at_walls && !part.as_one) add_by_walls(domain, part, part.patch);
   });
+  if (particles_press(domain)) load_by_all_particles(domain);
   // These have no patch of their own and count with the first, which this rank may not have.
   for (const SurfacePart<D>& part : surfaces.parts) {
     if (!part.at_walls || !part.as_one || part.foreign) continue;

@@ -31,7 +31,7 @@ from .choices import with_choices, with_picture
 from .choose_frames import choose_frames
 from .content import PRESETS, content_of, hash_of, with_preset
 from .detonation import Detonation
-from .frame import all_in_bodies
+from .frame import all_in_bodies, in_body
 from .grid import Grid
 from .loads import Load
 from .material import Material as Material  # also for those who import it from here
@@ -96,8 +96,8 @@ class Case(CaseModel):
         """
         self._why_in_space = choose_frames(self, self._in_space)
         flows = any(self.flows(part) for part in self.parts())
-        in_space = not all_in_bodies(self)
-        chosen = with_choices(self.grid.basis, self.run, self.contact, flows, in_space)
+        frames = bool(in_body(self)), not all_in_bodies(self)
+        chosen = with_choices(self.grid.basis, self.run, self.contact, flows, *frames)
         self.__dict__ |= chosen | with_picture(self)
         check_case(self)
 

@@ -37,7 +37,7 @@ _Table = TypeVar("_Table", bound=CaseModel)
 
 
 def with_choices(
-    basis: str, run: Run, contact: Contact, flows: bool, in_space: bool
+    basis: str, run: Run, contact: Contact, flows: bool, in_bodies: bool, in_space: bool
 ) -> dict[str, Run | Contact]:
     """Return `run` and `contact` of a case with what they leave out, by their names.
 
@@ -47,9 +47,10 @@ def with_choices(
             `transfer`, `scheme` and `cfl`.
         contact: likewise, with its `response`.
         flows: whether a body has no shape of its own: a gas, a liquid, an explosive.
+        in_bodies: whether any body has nodes of its own, whose contact bears shorter steps.
         in_space: whether any body has nodes in space; else its transfer chooses nothing.
     """
-    run = _run(run, basis, in_space)
+    run = _run(run, basis, in_bodies, in_space)
     return {"run": run, "contact": _contact(contact, run, flows)}
 
 
@@ -75,14 +76,14 @@ def usual_transfer(basis: str) -> str:
     return TRANSFER if _core.bases[basis]["second_moment"] > 0.0 else OTHER_TRANSFER
 
 
-def _run(run: Run, basis: str, in_space: bool) -> Run:
+def _run(run: Run, basis: str, in_bodies: bool, in_space: bool) -> Run:
     given, chosen = run.model_fields_set, {}
     if "transfer" not in given:
         chosen["transfer"] = Transfer.model_validate(usual_transfer(basis))
     word = chosen.get("transfer", run.transfer).word
     more = AFFINE if _core.transfers[word]["affine"] else OTHERS
-    if not in_space and usual_transfer(basis) == TRANSFER:
-        more = IN_BODIES
+    if in_bodies and usual_transfer(basis) == TRANSFER:
+        more = IN_BODIES if not in_space else more | {"cfl": min(more["cfl"], IN_BODIES["cfl"])}
     return _with(run, chosen | {key: value for key, value in more.items() if key not in given})
 
 

@@ -16,7 +16,7 @@ from mpm3dpp.base.frames import ALONG, AUTO, MATERIAL, UPDATED
 
 from .body import Body
 from .choices import BASIS
-from .frame import against_all, against_body, keys_at_nodes
+from .frame import against_all, against_body, apart_from_surfaces, keys_at_nodes
 from .meetings import meets_too_fast
 
 if TYPE_CHECKING:
@@ -120,10 +120,8 @@ def _reasons(case: Case, names: list[str]) -> dict[str, str]:
     others = [name for name in case.parts() if name not in why and _deforms(case, name)]
     in_space = [name for name, reason in why.items() if reason]
     in_space += [name for name in others if case.parts()[name].frame == UPDATED]
-    if not in_space or not case.contact_enabled:
-        return why
-    touches = f"it may touch {in_space[0]}, whose nodes lie in space"
-    return {name: reason or touches for name, reason in why.items()}
+    found = apart_from_surfaces(case, in_space)
+    return {name: reason or found for name, reason in why.items()}
 
 
 def _against(case: Case, name: str) -> str:

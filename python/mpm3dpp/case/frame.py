@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import chain
+from collections.abc import Iterable, Iterator
+from itertools import chain, product
 from typing import TYPE_CHECKING, Any
 
 from pydantic_core import PydanticCustomError
@@ -14,7 +14,8 @@ from mpm3dpp.base.errors import violation
 from mpm3dpp.base.frames import MATERIAL, UPDATED
 
 from .box import HOLDING
-from .pairs import presses
+from .matter import matter_of
+from .pairs import is_bonded, presses
 
 if TYPE_CHECKING:
     from .case import Case
@@ -93,10 +94,16 @@ def against_body(case: Case, name: str) -> Iterator[tuple[str, str]]:
         if failure.action != "no_tension":
             rule = f'does not go with {key}.failure whose action is "{failure.action}"'
             yield rule, f'{updated}, or give {key}.failure.{failure.model} action = "no_tension"'
-    moves = any(part.velocity) or any(part.angular_velocity)
-    if case.run.settle is not None and moves:
+    if case.run.settle is not None and _moves(part):
         rule = "does not go with run.settle yet where the body has a velocity at the start"
         yield rule, updated
+
+
+def _moves(part: Any) -> bool:
+    """Return whether the particles of an entry have velocities at the start."""
+    given = getattr(getattr(part, "particles", None), "velocities", None)
+    one_by_one = given is not None and bool(given.any())
+    return one_by_one or any(part.velocity) or any(part.angular_velocity)
 
 
 def _of_what_is_loose(material: Material, key: str) -> tuple[str, str]:
@@ -155,10 +162,33 @@ def against_all(case: Case) -> Iterator[tuple[str, str]]:
         yield "does not go with grid.coarsening", f"leave it out, or {updated}"
 
 
+def apart_from_surfaces(case: Case, in_space: Iterable[str]) -> str:
+    """Return why no body may have a surface beside entries whose nodes lie in space, or "".
+
+    Particles press surfaces by springs, which hold no gas, nor bonds, and not while a body is held.
+    """
+    in_space = list(in_space)
+    if not case.contact_enabled:
+        return ""
+    gases = [name for name in in_space if matter_of(case, name) == "gas"]
+    if gases:
+        return f"it may touch {gases[0]}, a gas, whose nodes lie in space"
+    held = [name for name in in_space if case.run.settle is not None and _moves(case.parts()[name])]
+    if held:
+        return f"run.settle holds {held[0]}, whose nodes lie in space, where it presses no surface"
+    for first, other in product(in_space, [name for name in case.parts() if name not in in_space]):
+        if is_bonded(case, first, other):
+            return f"{other} is bonded to {first}, whose nodes lie in space"
+    return ""
+
+
 def _against_others(case: Case) -> Iterator[tuple[str, str]]:
-    """Yield the first body in the other frame that is touched, likewise."""
-    others = [one for one in case.parts() if not case.is_rigid(one) and one not in in_body(case)]
-    if case.contact_enabled and others:
-        rule = f"does not go with contact with {others[0]}, which has another frame, yet"
-        remedy = f'give all frame = "{MATERIAL}", contact.enabled = false, or frame = "{UPDATED}"'
-        yield rule, remedy
+    """Yield what bodies whose nodes lie in space have against surfaces beside them, likewise."""
+    own = in_body(case)
+    others = [one for one in case.parts() if not case.is_rigid(one) and one not in own]
+    found = apart_from_surfaces(case, others)
+    if found:
+        yield (
+            f"does not go with contact between both frames: {found}",
+            f'give all frame = "{UPDATED}"',
+        )

@@ -39,8 +39,9 @@ class Run(_Run):
     """How time advances.
 
     With grid.basis = "gimp" or "linear" the default transfer is "flip"; with "flip", "pic" and
-    "xpic" the default scheme is "musl", and cfl 0.25. Where all bodies have nodes of their own
-    (`frame = "material"`) there is no transfer, and the default cfl is 0.4 with the default basis.
+    "xpic" the default scheme is "musl", and cfl 0.25. Where a body has nodes of its own
+    (`frame = "material"`) the default cfl is 0.4 with the default basis, and where all have there
+    is no transfer.
 
     Attributes:
         end_time: [s].

@@ -44,19 +44,21 @@ def contact_table(manifest: Manifest) -> list[str]:
     share = sum(ns for name, ns in manifest.stages.items() if _is_contact(name)) / total
     unit = "J/m" if manifest.case.get("grid", {}).get("dimension") == 2 else "J"
     pairs = sum(p.pairs for p in contact.pairs)
-    where = (
-        f"{contact.overlapped_nodes:,} overlapped nodes at the end, "
-        f"{contact.overlapped_nodes_max:,} at most"
-    )
-    crowd = f", {contact.bodies_per_node_max} bodies at a node at most"
+    where, crowd = [], ""
+    if contact.overlapped_nodes_max:
+        where.append(
+            f"{contact.overlapped_nodes:,} overlapped nodes at the end, "
+            f"{contact.overlapped_nodes_max:,} at most"
+        )
+        crowd = f", {contact.bodies_per_node_max} bodies at a node at most"
     if contact.touching_points_max:
-        where = (
+        where.append(
             f"points of surfaces that touch: {contact.touching_points:,} at the end, "
             f"{contact.touching_points_max:,} at most"
         )
-        crowd = ""
+    bodies = f"{contact.bodies:,} {'body' if contact.bodies == 1 else 'bodies'}"
     lines = [
-        f"contact: {contact.bodies:,} {'body' if contact.bodies == 1 else 'bodies'}, {where}, "
+        f"contact: {bodies}, {', '.join(where)}, "
         f"{pairs:,} {'pair' if pairs == 1 else 'pairs'}{crowd}, "
         f"{contact.peak_bytes / 2**20:.2f} MiB, {share:.1%} of the step's time"
     ]

@@ -12,7 +12,7 @@ import numpy as np
 
 from mpm3dpp.base.errors import RunError
 from mpm3dpp.base.signals import Notice, sentence
-from mpm3dpp.case.frame import all_in_bodies
+from mpm3dpp.case.frame import in_body
 from mpm3dpp.io.background import BackgroundWriter
 from mpm3dpp.io.history import HistoryWriter
 from mpm3dpp.io.manifest import Status
@@ -58,7 +58,7 @@ class Stepping:
         self._history, self._watch, self._progress = history, watch, progress
         self._notice = notice
         case, core = simulation.case, simulation.core
-        self._contact, self._by_surfaces = case.contact_enabled, all_in_bodies(case)
+        self._contact, self._by_surfaces = case.contact_enabled, bool(in_body(case))
         every = case.output.history_every
         most = min(every if self._contact else _BLOCK, core.history_capacity // 2)
         # Where they may end the run it is the same step with and without a device.

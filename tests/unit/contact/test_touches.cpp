@@ -8,6 +8,7 @@
 #include "mpm/contact/set_back.hpp"
 #include "mpm/contact/tile_touches.hpp"
 #include "mpm/domain.hpp"
+#include "mpm/particles/add_columns.hpp"
 #include "mpm/particles/cell_lists.hpp"
 #include "mpm/particles/make_body.hpp"
 

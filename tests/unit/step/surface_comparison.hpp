@@ -56,6 +56,8 @@ class SurfaceComparison {
   }
   /// Where bodies hardly part, restitution takes (1 - e^2) m* u_n / dt: u_n is a small difference.
   double rounding() const {
+    // Springs of particles are twice as stiff, and begin by small differences of velocities.
+    if (!twin_.pressing.particles.empty()) return 4.0;
     return restitution_takes(twin_.simulation->domain.contact_settings) ? 20.0 : 1.0;
   }
   // [N], of a stress of a thousandth of E on a face of a cell: at the start there is none.
@@ -90,6 +92,8 @@ class SurfaceComparison {
       move_rigid_bodies(twin_.step);
       move_prescribed_bodies(twin_.step);
       twin_.surfaces.touch();
+      twin_.read_pressing();
+      twin_.pressing.press();
       reference::pull(twin_.surfaces, twin_.bonds);
       reference::restitute(twin_.surfaces);
       compare_particles();
@@ -120,6 +124,7 @@ class SurfaceComparison {
     const Domain<D>& domain = twin_.simulation->domain;
     Difference places, deformation;
     for (const Patch<D>& patch : domain.grid.patches) {
+      if (domain.body_of(patch).kind == BodyKind::deformable) continue;  // given to the reference
       const ParticlePool<D>& pool = domain.pool_of(patch);
       const reference::SurfaceBody<D>& body =
           twin_.surfaces.bodies[static_cast<std::size_t>(patch.body)];
@@ -157,8 +162,12 @@ class SurfaceComparison {
       places.add(fast.places[k], expected.bodies[b].points[c].x);
     });
     CHECK_CLOSE(places.most, 0.0, tolerance * fast.spacing);
-    CHECK_EQUAL(fast.touching, expected.touches.size());
+    CHECK_EQUAL(fast.touching, expected.touches.size() + twin_.pressing.touching);
     double push = 0.0, rub = 0.0;
+    for (const reference::PressingParticle<D>& p : twin_.pressing.particles) {
+      push += p.stored_push;
+      rub += p.stored_rub;
+    }
     for (const reference::SurfaceBody<D>& body : expected.bodies) {
       push += body.stored_push;
       rub += body.stored_rub;
@@ -168,6 +177,7 @@ class SurfaceComparison {
     CHECK_CLOSE(fast.stored_push, push, tolerance * std::max(push, least));
     CHECK_CLOSE(fast.stored_rub, rub, tolerance * std::max(push, least));
     compare_touches();
+    compare_pressing();
     compare_wholes();
     compare_faces();
   }
@@ -200,6 +210,36 @@ class SurfaceComparison {
     check(slips, 0.01 * fast.spacing);
     check(onsets, 0.01 * fast.spacing);
     compare_levelled();
+  }
+  /// What particles in space are pushed with, and what they remember.
+  void compare_pressing() {
+    const Domain<D>& domain = twin_.simulation->domain;
+    Difference pushes, rubs, slips, lengths;
+    for (const Patch<D>& patch : domain.grid.patches) {
+      const ParticlePool<D>& pool = domain.pool_of(patch);
+      const PressingColumns& at = pool.pressing;
+      if (at.force < 0) continue;
+      for (const std::uint32_t row : pool.rows(patch)) {
+        const reference::PressingParticle<D>& p = twin_.pressing.particles[pool.id[row]];
+        const auto number = [&](int column) { return pool.columns.component(column)[row]; };
+        Vec<double, D> push, slip;
+        for (int a = 0; a < D; ++a) {
+          push[a] = number(at.force + a);
+          slip[a] = number(at.slip + a);
+        }
+        CHECK_EQUAL(static_cast<int>(number(at.opposite)) - 1, p.whom);
+        pushes.add(push, p.push);
+        rubs.add((-0.8 * number(at.stiffness)) * slip, p.rub);
+        slips.add(slip, p.memory.s);
+        lengths.add(Vec<double, 2>{number(at.onset), number(at.set_back)},
+                    Vec<double, 2>{p.memory.w, p.set_back});
+      }
+    }
+    const double spacing = domain.surfaces.spacing;
+    check(pushes, least_force());
+    check(rubs, least_force());
+    check(slips, 0.01 * spacing);
+    check(lengths, 0.01 * spacing);
   }
   void compare_levelled() {
     const Surfaces<D>& fast = twin_.simulation->domain.surfaces;
@@ -243,6 +283,11 @@ class SurfaceComparison {
         moment += cross(in_space<D>(body.place(i)), in_space<D>(t));
         size = std::max(size, rounding() * norm(t));
       }
+    }
+    for (const reference::PressingParticle<D>& p : twin_.pressing.particles) {
+      force += in_space<D>(p.push) + in_space<D>(p.rub);
+      moment += cross(in_space<D>(p.x), in_space<D>(p.push)) +
+                cross(in_space<D>(p.place), in_space<D>(p.rub));
     }
     for (const SurfacePart<D>& part : twin_.simulation->domain.surfaces.parts) {
       for (int a = 0; a < D; ++a)

@@ -7,6 +7,7 @@
 
 #include "check.hpp"
 #include "mpm/reference/bonds.hpp"
+#include "mpm/reference/pressing.hpp"
 #include "mpm/reference/restitution.hpp"
 #include "mpm/run/bodies.hpp"
 #include "mpm/run/prepare.hpp"
@@ -30,6 +31,7 @@ struct BlocksGiven {
   BodyKind kind = BodyKind::deformable;
   std::array<TimeFunction, 3> velocity{}, spin{};  // where they are prescribed
   unsigned held_by = ~0u;                          // of the walls that hold what lies on them
+  bool in_space = false;                           // its particles press others; the last body
 };
 
 template <int D>
@@ -55,6 +57,7 @@ class SurfaceTwin {
   std::list<reference::KeptNodes<D>> kept;
   reference::Surfaces<D> surfaces{step, e};
   std::vector<reference::Bond<D>> bonds;
+  reference::Pressing<D> pressing{surfaces};
 
   explicit SurfaceTwin(const SurfacesGiven<D>& given)
       : simulation(std::make_unique<Simulation<D>>(settings_of(given))) {
@@ -80,6 +83,8 @@ class SurfaceTwin {
     start_nodes();
     bonds = reference::find_bonds(surfaces);
     surfaces.start();
+    read_pressing();
+    pressing.start();
     shake_nodes(given.shaking);
     find_points();
   }
@@ -94,6 +99,23 @@ class SurfaceTwin {
       for (int n = 0; n < block.count; ++n)
         if (block.records[n][mass_at] > 0.0)
           f(index_of(grid, patch, n), block, n, static_cast<std::size_t>(patch.body));
+    }
+  }
+
+  /// Where the particles in space are by now, and how they move.
+  void read_pressing() {
+    const Domain<D>& domain = simulation->domain;
+    for (const Patch<D>& patch : domain.grid.patches) {
+      if (domain.body_of(patch).kind != BodyKind::deformable) continue;
+      const ParticlePool<D>& pool = domain.pool_of(patch);
+      for (const std::uint32_t row : pool.rows(patch)) {
+        reference::PressingParticle<D>& p = pressing.particles[pool.id[row]];
+        p.x = pool.position_of(row);
+        p.pressure = 0.0;
+        for (int k = 0; k < 3; ++k) p.pressure -= pool.stress(k)[row] / 3.0;
+        for (int a = 0; a < D; ++a) p.v[a] = pool.v(a)[row];
+        p.now = pool.mass()[row] / pool.volume()[row];
+      }
     }
   }
 
@@ -144,7 +166,12 @@ class SurfaceTwin {
     choice.strength = {"elastic", {{"E", given.E}, {"nu", given.nu}}};
     if (given.kind == BodyKind::rigid) choice.strength = {"rigid", {}};
     choice.in_body = deforms;
+    if (given.in_space) choice.in_body = false;
     const int material = add_material(*simulation, choice);
+    if (given.in_space) {
+      add_pressing(given, material, volume);
+      return;
+    }
     reference::SurfaceBody<D> surface;
     if (deforms) {
       kept.push_back({step});
@@ -173,6 +200,24 @@ class SurfaceTwin {
     if (given.kind == BodyKind::prescribed) prescribe(number, given, body);
     add_points(number, given, surface);
     surfaces.bodies.push_back(surface);
+  }
+
+  /// Particles alone, of a body in space.
+  void add_pressing(const BlocksGiven<D>& given, int material, double volume) {
+    std::vector<double> x, v;
+    for (const TurnedBlock<D>& block : given.blocks)
+      for_each_in(Vec<double, D>::zero() - 0.5 * block.size, block.size, 0.5, -1,
+                  [&](const Vec<double, D>& at) {
+                    const Vec<double, D> place = place_of(block, at);
+                    x.insert(x.end(), place.c, place.c + D);
+                    v.insert(v.end(), block.velocity.c, block.velocity.c + D);
+                    reference::PressingParticle<D>& p = pressing.particles.emplace_back();
+                    p.V0 = volume;
+                    p.density = given.density;
+                    const Elastic law = Elastic::of(given.E, given.nu, given.density);
+                    p.M = law.lambda + 2.0 * law.G;
+                  });
+    add_body<D>(*simulation, "body", material, x, v, std::array{volume});
   }
 
   /// About the middle of its first block.

@@ -328,6 +328,40 @@ void check_not_held(Report& report, Wall wall) {
   CHECK(wall == Wall::slip ? rubs == 0 : rubs > 20, rubs);
 }
 
+/// What falls on a block and against a rigid one has its nodes in space: its particles press them
+/// there, begin softly, stick and slide, and what overlapped at the start slides out.
+template <int D>
+void check_pressing(Report& report, BasisId basis) {
+  SurfacesGiven<D> given = two_blocks<D>(basis);
+  given.friction = 0.15;
+  given.shaking = 0.5;
+  BlocksGiven<D> sand = given.bodies[1];
+  sand.in_space = true;
+  TurnedBlock<D> beside = sand.blocks[0];
+  sand.blocks[0].centre[1] -= 0.05;
+  beside.centre[0] = sand.blocks[0].centre[0] + 0.5 * (sand.blocks[0].size[0] + beside.size[0]);
+  beside.angle = 0.0;
+  beside.centre[0] += 0.03;
+  beside.velocity[0] = -4.0;
+  given.bodies[1] = {{beside}, 1e7, 0.3, 3000.0, BodyKind::rigid};
+  given.bodies.push_back(sand);
+  SurfaceTwin<D> twin(given);
+  SurfaceComparison<D> comparison(report, twin);
+  std::array<int, 3> count{};  // sticks, slides, set back
+  std::array<int, 2> of{};     // the bodies pressed
+  for (int k = 0; k < 24; ++k) {
+    comparison.make_step(step_of_waves);
+    for (const reference::PressingParticle<D>& p : twin.pressing.particles) {
+      const double most = given.friction * norm(p.push);
+      if (most > 0.0) ++count[norm(p.rub) < 0.999 * most ? 0 : 1];
+      count[2] += p.set_back > 0.0;
+      if (p.pressed) ++of[static_cast<std::size_t>(p.whom)];
+    }
+  }
+  for (const int n : count) CHECK(n > 10, count[0], count[1], count[2]);
+  CHECK(of[0] > 10 && of[1] > 10, of[0], of[1]);
+}
+
 }  // namespace
 
 void test_surfaces(Report& report) {
@@ -336,6 +370,8 @@ void test_surfaces(Report& report) {
     check_springs<3>(report, basis);
     check_friction<2>(report, basis);
     check_friction<3>(report, basis);
+    check_pressing<2>(report, basis);
+    check_pressing<3>(report, basis);
   }
   check_levelled<2>(report);
   check_levelled<3>(report);

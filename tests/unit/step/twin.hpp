@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "mpm/contact/candidates.hpp"
+#include "mpm/particles/add_columns.hpp"
 #include "mpm/particles/make_body.hpp"
 #include "mpm/reference/absorb.hpp"
 #include "mpm/reference/averaging.hpp"
