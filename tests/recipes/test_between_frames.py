@@ -52,10 +52,9 @@ density = "1000 kg/m^3"
 strength = { elastic = { E = "1 MPa", nu = 0.3 } }
 [material.hard]
 density = "2000 kg/m^3"
-strength = { FLOOR }
+strength = { elastic = { E = "5 MPa", nu = 0.3 } }
 [body.floor]
 material = "hard"
-MOTION
 shape = { box = { lower = LOW, upper = HIGH } }
 [body.block]
 material = "soft"
@@ -125,13 +124,10 @@ def test_rods_that_hit(in_space: str) -> None:
     assert -pair.impulse[0] == pytest.approx(mass * right, rel=1e-3)
 
 
-def slope(dimension: int, angle: float, floor: str) -> Case:
+def slope(dimension: int, angle: float) -> Case:
     """A block in space on a slope, which is turned into the axes."""
     g = [9.81 * math.sin(angle), -9.81 * math.cos(angle), 0.0][:dimension]
     text = SLOPE.replace("DIMENSION", str(dimension)).replace("GRAVITY", str(g))
-    rigid = floor == "rigid"
-    text = text.replace("FLOOR", "rigid = {}" if rigid else 'elastic = { E = "5 MPa", nu = 0.3 }')
-    text = text.replace("MOTION", 'motion = "fixed"' if rigid else "")
     for word, place in {
         "LOWER": [0.02, 0.0, 0.02],
         "UPPER": [0.06, 0.02, 0.05],
@@ -139,18 +135,17 @@ def slope(dimension: int, angle: float, floor: str) -> Case:
         "HIGH": [0.2, 0.0, 0.07],
     }.items():
         text = text.replace(f"= {word}", f"= {place[:dimension]}")
-    if not rigid:
-        walls = "walls = { y_min = 'fixed' }"
-        low, high = [-0.1, -0.02, -0.1][:dimension], [0.3, 0.2, 0.2][:dimension]
-        text = text.replace("[run]", f"box = {{ lower = {low}, upper = {high}, {walls} }}\n[run]")
+    walls = "walls = { y_min = 'fixed' }"
+    low, high = [-0.1, -0.02, -0.1][:dimension], [0.3, 0.2, 0.2][:dimension]
+    text = text.replace("[run]", f"box = {{ lower = {low}, upper = {high}, {walls} }}\n[run]")
     return Case.from_text(text)
 
 
-@pytest.mark.parametrize(("dimension", "floor"), [(2, "soft"), (3, "soft")])
-def test_a_block_slides_down_a_slope(dimension: int, floor: str) -> None:
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_block_slides_down_a_slope(dimension: int) -> None:
     """With friction, as a point does: .5 % more in 2D and .1 in 3D, as it trembles."""
     angle = 0.5
-    case = slope(dimension, angle, floor)
+    case = slope(dimension, angle)
     assert case.body["floor"].frame == "material"
     simulation = Simulation(case)
     row = history(simulation)
@@ -272,6 +267,55 @@ velocity = VELOCITY
 shape = { box = { lower = WEIGHT_LOW, upper = WEIGHT_HIGH } }
 """
 
+ERODED = """
+[grid]
+dimension = 2
+cell_size = "1 mm"
+[run]
+end_time = "0.6 ms"
+[material.hard]
+density = "5000 kg/m^3"
+strength = { elastic = { E = "1 GPa", nu = 0.3 } }
+[material.soft]
+density = "1000 kg/m^3"
+strength = { j2 = { E = "100 MPa", nu = 0.3, Y0 = "1 MPa", H = 0 } }
+failure = { plastic_strain = { limit = 0.3, action = "erode" } }
+[body.ball]
+material = "hard"
+velocity = ["40 m/s", 0]
+shape = { disc = { centre = ["-6.2 mm", 0], radius = "6 mm" } }
+[body.plate]
+material = "soft"
+shape = { box = { lower = [0, "-20 mm"], upper = ["6 mm", "20 mm"] } }
+"""
+BAR = """
+[grid]
+dimension = 2
+cell_size = "1 mm"
+box = { lower = [0, "-20 mm"], upper = ["80 mm", "40 mm"], walls = { x_min = "contact" } }
+[run]
+end_time = "1 ms"
+[material.soft]
+density = "1000 kg/m^3"
+strength = { elastic = { E = "20 MPa", nu = 0.3 } }
+[material.metal]
+density = "1000 kg/m^3"
+strength = { j2 = { E = "100 MPa", nu = 0.3, Y0 = "0.5 MPa", H = 0 } }
+[body.left]
+material = "soft"
+frame = "updated"
+velocity = ["2 m/s", 0]
+shape = { disc = { centre = ["50 mm", "20 mm"], radius = "5 mm" } }
+[body.right]
+material = "soft"
+frame = "updated"
+shape = { disc = { centre = ["60.2 mm", "20 mm"], radius = "5 mm" } }
+[body.bar]
+material = "metal"
+frame = "material"
+velocity = ["-18 m/s", 0]
+shape = { box = { lower = ["0.2 mm", "-4 mm"], upper = ["24.2 mm", "4 mm"] } }
+"""
 HALF = """
 [grid]
 dimension = 2
@@ -343,6 +387,50 @@ def test_another_world_is_the_same(dimension: int, steps: int) -> None:
 def test_the_same_bits(dimension: int, tmp_path: Path) -> None:
     """With any number of threads and ranks, stages fused or not, and after a restart amid it."""
     check_same_bits(heap(dimension), tmp_path)
+
+
+def test_pairs_of_both_kinds_are_told() -> None:
+    """Bodies in space meet at nodes, others by surfaces: both are in the table of contacts."""
+    simulation = Simulation(heap(2))
+    simulation.advance(300)
+    rows = simulation.core.grains_and_contacts()[1]
+    told = {(int(a), int(b)) for a, b in rows[:, :2]}
+    pushed = {tuple(p.bodies) for p in simulation.core.contact_pairs() if any(p.force)}
+    assert told == pushed and {(0, 2), (2, 3)} <= told
+
+
+def test_nodes_laid_anew_beside_bodies_that_meet_at_nodes() -> None:
+    """A bar mushrooms on a wall and gets its nodes anew; two discs in space lean on each other
+    meanwhile, by as much as without the bar."""
+    forces = []
+    for text in (BAR, BAR.partition("[body.bar]")[0]):
+        simulation = Simulation(Case.from_text(text), threads=1)
+        renewals = 0
+        while simulation.time < 0.8e-3:
+            simulation.advance(20)
+            renewals = int(simulation.history()["renewals"][-1])
+        forces.append(simulation.core.contact_pairs()[-1].impulse[0])
+        if "[body.bar]" in text:
+            assert renewals > 0
+    assert forces[0] == pytest.approx(forces[1], rel=0.02)
+
+
+def test_what_erodes_takes_no_push_along() -> None:
+    """A ball goes through a plate that is eroded. What has eroded keeps the velocity that it left
+    with, so that the momentum of all is what it was: no particle pushes that is not pushed."""
+    simulation = Simulation(Case.from_text(ERODED))
+    assert sorted(body.frame for body in simulation.case.body.values()) == ["material", "updated"]
+
+    def momentum() -> float:
+        return sum(
+            float(simulation.column(name, "mass")[:, 0] @ simulation.column(name, "velocity")[:, 0])
+            for name in simulation.bodies
+        )
+
+    begin = momentum()
+    simulation.advance(10**6, end_time=simulation.case.run.end_time)
+    assert simulation.eroded()["count"] > 20
+    assert momentum() == pytest.approx(begin, rel=1e-9)
 
 
 def test_half_a_model() -> None:

@@ -29,7 +29,7 @@ struct AxisWeights {
 /// What acts on a face, d from a particle, acts on its nodes by N + d . grad N + sum_k b_k
 /// d2N/dx_k^2 (decision 0071), with `second_derivative` along an axis and, for a face across it
 /// `away` cells from a particle, b = `second_order()`, of a normal with that part of its square
-/// along the axis. A basis without these gives it by linear functions (loads/load_surfaces.cpp).
+/// along the axis. A basis without these gives it by linear functions (loads/carried_piece.hpp).
 template <class B>
 concept BasisModel = requires(const B basis, double xi) {
   { B::name } -> std::convertible_to<std::string_view>;

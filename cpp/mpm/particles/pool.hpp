@@ -31,12 +31,13 @@ struct TransferColumns {
 /// Of particles whose nodes lie in space and that press surfaces (surfaces/pressing.hpp): the first
 /// component of each column; -1: there are none.
 struct PressingColumns {
-  int force = -1, arm = -1;  // of the springs [N], and the way to where it acts [m], D components
-  int slip = -1;             // of the spring of friction [m], D components
-  int stiffness = -1;        // of the springs, 0 where none is pressed [N/m]
-  int onset = -1;            // over which the spring begins [m]
-  int opposite = -1;         // 1 + number of the body that is pressed most, or 0
-  int set_back = -1;         // by which they overlapped at the start [m]
+  int force = -1;      // of the springs [N], D components
+  int arm = -1;        // the way to where friction acts [m], D components
+  int slip = -1;       // of the spring of friction [m], D components
+  int stiffness = -1;  // of the springs, 0 where none is pressed [N/m]
+  int onset = -1;      // over which the spring begins [m]
+  int opposite = -1;   // 1 + number of the body that is remembered, or 0
+  int set_back = -1;   // by which they overlapped at the start [m]
 };
 
 template <int D>

@@ -44,7 +44,8 @@ bool is_deformed(const ParticlePool<D>& pool, std::uint32_t row) {
 
 /// Can a particle be stepped?
 template <int D>
-bool is_fine(const TileGrid<D>& grid, const ParticlePool<D>& pool, std::uint32_t row) {
+bool is_fine(const TileGrid<D>& grid, const ParticlePool<D>& pool, std::uint32_t row,
+             std::size_t bodies) {
   const Vec<double, D> x = listed_place(pool, row);
   bool fine = finite(pool.position_of(row)) && is_deformed(pool, row) && pool.mass()[row] > 0.0 &&
               pool.volume()[row] > 0.0 && finite(pool.mass()[row], pool.volume()[row]);
@@ -56,7 +57,11 @@ bool is_fine(const TileGrid<D>& grid, const ParticlePool<D>& pool, std::uint32_t
     const double share = pool.columns.component(pool.set_back)[row];
     fine = fine && share >= 0.0 && std::isfinite(share);
   }
-  return fine;
+  if (pool.pressing.force < 0) return fine;
+  for (int k = pool.pressing.force; k <= pool.pressing.set_back; ++k)
+    fine = fine && std::isfinite(pool.columns.component(k)[row]);
+  const double opposite = pool.columns.component(pool.pressing.opposite)[row];
+  return fine && opposite >= 0.0 && opposite <= static_cast<double>(bodies);
 }
 
 /// The chains of pieces that particles carry: each piece once, by the particle that it is of.
@@ -83,10 +88,12 @@ template <int D>
 void check_particles(const Domain<D>& domain, std::size_t m, std::span<const PlacedRow> rows,
                      const StateStream& stream) {
   const ParticlePool<D>& pool = domain.pools[m];
-  stream.check_all(
-      std::ranges::all_of(
-          rows, [&](const PlacedRow& one) { return is_fine(domain.grid, pool, one.row); }),
-      "its particles are damaged");
+  stream.check_all(std::ranges::all_of(rows,
+                                       [&](const PlacedRow& one) {
+                                         return is_fine(domain.grid, pool, one.row,
+                                                        domain.bodies.size());
+                                       }),
+                   "its particles are damaged");
   stream.check_all(are_fine(domain, pool, rows), "its loads are damaged");
 }
 

@@ -111,18 +111,16 @@ void add_row(const ActingBetween<D>& pair, double time_step, std::vector<double>
 
 template <int D>
 std::vector<double> contact_rows(Domain<D>& domain) {
-  if (domain.surfaces.meet) {
-    std::vector<double> rows;
+  std::vector<double> rows;
+  if (domain.surfaces.meet)
     for (const ActingBetween<D>& pair : domain.surfaces.between)
       add_row(pair, domain.time_step, rows);
-    return rows;
-  }
-  if (!domain.has_contact() || domain.step == 0) return {};
+  if (!domain.has_contact() || domain.step == 0) return rows;
+  // Behind these the pairs that meet at nodes.
   std::vector<NodeContact> found = contacts_here(domain);
   add_those_of_others(*domain.grid.partition.comm, found);
   // In this order sums are the same for any number of threads and ranks.
   std::ranges::sort(found, {}, &NodeContact::order);
-  std::vector<double> rows;
   for (auto first = found.begin(); first != found.end();) {
     const auto last = std::find_if(first, found.end(), [&](const NodeContact& node) {
       return node.a != first->a || node.b != first->b;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mpm/comm/all_sums.hpp"
+#include "mpm/contact/candidates.hpp"
 #include "mpm/followers/find_followers.hpp"
 #include "mpm/followers/follow.hpp"
 #include "mpm/grid/blocks.hpp"
@@ -164,6 +165,9 @@ void make_lists(Domain<D>& domain) {
   for (Patch<D>& patch : grid.patches) patch.left_cell = !patch.foreign && !patch.keeps;
   domain.sums.assign(grid.patches.size(), {});
   if (grid.walls.exist) domain.face_parts.assign(grid.patches.size(), {});
+  // Of those whose nodes lie in space.
+  if (domain.has_contact())
+    connect_tiles(domain.contact, grid, domain.bodies, domain.contact_settings.response);
 }
 
 /// Bodies turn as they did, whatever of it their nodes have by now; what those have not of the

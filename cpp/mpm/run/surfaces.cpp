@@ -124,6 +124,7 @@ Surfaces<D> gather_surfaces(const Domain<D>& domain) {
     write_all<KeptOfContact<double>>(letter, all.set_back);
     write(letter, all.on_hosts.size());
     write_all<ActingOnHost<D>>(letter, all.on_hosts);
+    write(letter, all.pressed_walls);
     for (std::size_t k = 0; k < all.parts.size(); ++k)
       if (!all.parts[k].foreign) write_part(letter, k, all.parts[k]);
   }
@@ -134,6 +135,10 @@ Surfaces<D> gather_surfaces(const Domain<D>& domain) {
       all.set_back.push_back(reader.read<KeptOfContact<double>>());
     for (std::size_t left = reader.read<std::size_t>(); left > 0; --left)
       all.on_hosts.push_back(reader.read<ActingOnHost<D>>());
+    const auto walls = reader.read<PressedWalls<D>>();
+    all.pressed_walls.faces.add(walls.faces, 1.0);
+    all.pressed_walls.moment += walls.moment;
+    all.pressed_walls.any = all.pressed_walls.any || walls.any;
     while (!reader.done()) read_part(reader, all);
   }
   std::sort(all.set_back.begin(), all.set_back.end());
@@ -153,6 +158,7 @@ void keep_own(Domain<D>& domain) {
   });
   std::erase_if(surfaces.on_hosts,
                 [&](const ActingOnHost<D>& one) { return is_foreign(one.host); });
+  if (domain.grid.partition.comm->rank() > 0) surfaces.pressed_walls = {};
   std::ranges::fill(surfaces.place_on_hosts, 0);
   for (std::size_t k = 0; k < surfaces.on_hosts.size(); ++k)
     surfaces.place_on_hosts[surfaces.on_hosts[k].host] = static_cast<std::uint32_t>(k + 1);

@@ -67,7 +67,7 @@ std::string deep_in_another(const std::string& whose, double share) {
       << " of the reach of its springs deep in a surface: beyond 1 they no longer hold, and bodies "
          "pass through each other, as they do where they meet at more than about a fifth of the "
          "speed of waves, or where a narrow tool stretches what it presses; give frame = "
-         "\"updated\", or fewer particles_per_cell, by which springs "
+         "\"updated\" to both, or fewer particles_per_cell, by which springs "
          "reach farther";
   return text.str();
 }

@@ -92,9 +92,10 @@ struct Stages : Data {
                                      lists | position | deformation | kept_nodes | load_pieces |
                                          node_force | impulses | patch_sums,
                                      load_pieces | node_force | impulses | patch_sums};
-  static constexpr Row load_by_surfaces{"forces of surfaces", mpm::load_by_surfaces<D>,
-                                        lists | surfaces | node_force | impulses | patch_sums,
-                                        surfaces | node_force | impulses | patch_sums};
+  static constexpr Row load_by_surfaces{
+      "forces of surfaces", mpm::load_by_surfaces<D>,
+      lists | position | surfaces | node_force | impulses | patch_sums,
+      surfaces | node_force | impulses | patch_sums};
   static constexpr Row add_body_forces{
       "body forces",
       mpm::add_body_forces<D>,
@@ -226,8 +227,9 @@ struct Stages : Data {
                                   of_rigid | left_cells | patch_sums};
   // Where bodies are by now, with the velocities that have brought them there.
   static constexpr Row touch_surfaces{"touch surfaces", mpm::touch_surfaces<D>,
-                                      lists | of_particles | of_rigid | deformation | kept_nodes |
-                                          kept_spins | surfaces | records | patch_sums,
+                                      lists | of_particles | affine | volume | stress | of_rigid |
+                                          deformation | kept_nodes | kept_spins | surfaces |
+                                          records | patch_sums,
                                       kept_spins | surfaces | records | patch_sums};
   static constexpr Row record_contacts{"record contacts", mpm::record_contacts<D>,
                                        node_mass | contacts | records, records};

@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "mpm/surfaces/felt.hpp"
+#include "mpm/surfaces/kept_of_particle.hpp"
 #include "mpm/surfaces/law.hpp"
 #include "mpm/surfaces/mirrored.hpp"
 #include "mpm/surfaces/pressing.hpp"
@@ -206,11 +207,15 @@ void find_in_patch(const Domain<D>& domain, PressingPatch<D>& to) {
   thread_local PointsNear<D> near;
   if (!near.find(domain, patch)) return;
   const double least = -0.5 * most_onset(domain.grid.cell_size, surfaces.spacing);
+  const double* const failed =
+      pool.at.failed >= 0 ? pool.columns.component(pool.at.failed) : nullptr;
   patch.for_each_cell([&](int cell, std::uint32_t begin, std::uint32_t end) {
     const std::span<const PointInTile<D>> points = near.of(cell);
     if (points.empty()) return;
     for (std::uint32_t k = begin; k < end; ++k) {
       const std::uint32_t row = pool.order[k];
+      // It takes no part in the next step, where it would be pushed.
+      if (failed != nullptr && failed[row] >= static_cast<double>(FailureAction::erode)) continue;
       const double edge = edge_of(body, pool, row);
       const ParticleNear<D> of{
           body, pool, row, pool.position_of(row), edge, std::min(0.5 * edge, surfaces.spacing),
@@ -235,6 +240,16 @@ std::uint64_t order_of(const Index<D>& tile) {
         order << 21 | (static_cast<std::uint64_t>(tile[static_cast<std::size_t>(a)] + (1 << 20)) &
                        ((1u << 21) - 1));
   return order;
+}
+
+/// How deep a particle overlapped the same body in the step before; 0 if it did not [m].
+template <int D>
+double overlap_before(const std::vector<PressingPatch<D>>& before, std::size_t k,
+                      const PressingTouch<D>& touch) {
+  if (k >= before.size()) return 0.0;
+  for (const PressingTouch<D>& one : before[k].touches)
+    if (one.row == touch.row && one.opposite == touch.opposite) return std::max(one.overlap, 0.0);
+  return 0.0;
 }
 
 }  // namespace
@@ -273,18 +288,27 @@ void find_pressing(Domain<D>& domain) {
 template <int D>
 void set_back_pressing(Domain<D>& domain) {
   if (!particles_press(domain)) return;
+  // What is pressed already is not set back by that again.
+  const std::vector<PressingPatch<D>> before = domain.surfaces.pressing;
   find_pressing(domain);
   const double seen = 1e-6 * domain.grid.cell_size;
   SetBack& told = domain.contact.set_back;
-  for (const PressingPatch<D>& of : domain.surfaces.pressing) {
+  for (std::size_t k = 0; k < domain.surfaces.pressing.size(); ++k) {
+    const PressingPatch<D>& of = domain.surfaces.pressing[k];
     ParticlePool<D>& pool = domain.pool_of(domain.grid.patches[of.patch]);
-    double* const set_back = pool.columns.component(pool.pressing.set_back);
     for (const PressingTouch<D>& touch : of.touches) {
-      if (!(touch.overlap > set_back[touch.row])) continue;
-      set_back[touch.row] = touch.overlap;
-      pool.columns.component(pool.pressing.opposite)[touch.row] = touch.opposite + 1.0;
-      told.most = std::max(told.most, touch.overlap);
-      if (touch.overlap > seen) ++told.particles;
+      const double more = touch.overlap - overlap_before<D>(before, k, touch);
+      const KeptOfParticle<D> kept(pool, touch.row);
+      double& opposite = kept.number(pool.pressing.opposite);
+      double& set_back = kept.number(pool.pressing.set_back);
+      const bool is_known = opposite == touch.opposite + 1.0;
+      if (!(more > (is_known ? 0.0 : set_back))) continue;
+      if (!is_known) kept.forget();
+      set_back = is_known ? set_back + more : more;
+      opposite = touch.opposite + 1.0;
+      if (domain.step > 0) continue;  // what is drawn into each other is told
+      told.most = std::max(told.most, more);
+      if (more > seen) ++told.particles;
     }
   }
 }

@@ -18,6 +18,14 @@ class KeptOfParticle {
     for (int a = 0; a < D; ++a) pool_.columns.component(column + a)[row_] = v[a];
   }
 
+  /// All of it but the force that acts in the coming step.
+  void forget() const {
+    const PressingColumns& at = pool_.pressing;
+    set(at.slip, Vec<double, D>::zero());
+    for (const int column : {at.stiffness, at.onset, at.opposite, at.set_back})
+      number(column) = 0.0;
+  }
+
  private:
   ParticlePool<D>& pool_;
   std::uint32_t row_;

@@ -1,16 +1,17 @@
 #pragma once
 // Particles whose nodes lie in space, of what flows, press the surfaces of bodies on nodes of their
-// own, and of bodies that do not deform. A particle p is a ball as wide as a cube of its volume; it
-// overlaps a surface, of which the sum (S3) of felt.hpp tells the height e zeta over its points, by
-//   o = e / 2 + r - b - e zeta,   r = V_p^(1/D) / 2,                                        (S7)
+// own, and of bodies that do not deform. A particle p is a ball as wide as a cube of its first
+// volume; it overlaps a surface, of which the sum (S3) of felt.hpp tells the height e zeta over its
+// points, by
+//   o = e / 2 + r - b - e zeta,   r = V0^(1/D) / 2, e at most,                              (S7)
 // and is pushed by springs of the energy k o^2 / 2 that begin softly, (S4), with friction that
-// remembers, (S2). k is twice that of (S1) with A = V_p^((D-1)/D), as no points push back. b is by
+// remembers, (S2). k is twice that of (S1) with A = V0^((D-1)/D), as no points push back. b is by
 // how much it overlapped at the start. A step ends with
 //   find_pressing()     particles that overlap, and the points that they feel
 //   press_particles()   springs and friction, kept in columns of the particles
 //   give_pressing()     the opposites to the points felt
-// and in the next the forces go to the particles' nodes by load_by_particles(), with functions
-// that act at the surface, as loads do (decision 0071).
+// and in the next load_by_particles() gives the forces to the particles' nodes: of springs at the
+// particle, of friction at the surface, as loads are given (decision 0071).
 #include "mpm/domain.hpp"
 #include "mpm/ledger/work.hpp"
 #include "mpm/surfaces/acting.hpp"
@@ -31,7 +32,8 @@ void list_points_by_tile(Domain<D>& domain);
 template <int D>
 void find_pressing(Domain<D>& domain);
 
-/// At the start: what overlaps is set back by as much.
+/// At the start, and where surfaces have been uncovered since the last step: what overlaps is set
+/// back by as much more as it does.
 template <int D>
 void set_back_pressing(Domain<D>& domain);
 

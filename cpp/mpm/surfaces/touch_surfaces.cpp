@@ -106,9 +106,10 @@ std::size_t give_touches(Acting<D>& acting, const Domain<D>& domain, std::size_t
 template <int D, class F>
 std::size_t give_pressing(Acting<D>& acting, const Domain<D>& domain, F&& give_until) {
   const std::vector<PressingPatch<D>>& all = domain.surfaces.pressing;
-  std::vector<std::uint32_t> sorted(all.size());
+  thread_local std::vector<std::uint32_t> sorted;  // a step must not allocate
+  sorted.resize(all.size());
   std::iota(sorted.begin(), sorted.end(), 0u);
-  std::ranges::stable_sort(sorted, {}, [&](std::uint32_t k) { return all[k].order; });
+  std::ranges::sort(sorted, {}, [&](std::uint32_t k) { return std::pair(all[k].order, k); });
   std::size_t touching = 0;
   for (const std::uint32_t k : sorted) {
     if (all[k].touches.empty()) continue;
@@ -229,7 +230,9 @@ template <int D>
 void load_by_all_particles(Domain<D>& domain) {
   for_each_patch(domain, deformable, [&](std::size_t p) { load_by_particles(domain, p); });
   const PressedWalls<D>& walls = domain.surfaces.pressed_walls;
-  if (!walls.any || domain.sums.empty()) return;
+  if (!walls.any) return;
+  if (domain.sums.empty()) domain.sums.resize(1);
+  if (domain.face_parts.empty()) domain.face_parts.resize(1);
   const double acts = time_of_forces(domain, true);
   domain.sums[0].angular.walls += acts * walls.moment;
   domain.face_parts[0].add(walls.faces, acts);

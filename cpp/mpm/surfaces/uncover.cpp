@@ -8,6 +8,7 @@
 #include "mpm/surfaces/boxes_of_bodies.hpp"
 #include "mpm/surfaces/host_motion.hpp"
 #include "mpm/surfaces/overlaps.hpp"
+#include "mpm/surfaces/pressing.hpp"
 #include "mpm/surfaces/renew_points.hpp"
 
 namespace mpm {
@@ -173,6 +174,7 @@ void uncover(Domain<D>& domain) {
   surface.uncover(domain, more);
   surface.lay(domain);
   set_back_more(domain, overlaps);
+  set_back_pressing(domain);
 }
 
 template void uncover<2>(Domain<2>&);

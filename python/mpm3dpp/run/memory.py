@@ -62,6 +62,8 @@ def memory_bytes(case: Case, bodies: Filled) -> int:
         each = _PARTICLE_BYTES[D] + taken + 8 * len(state)
         if kept := case.parts()[part.name].frame == MATERIAL:
             each += 8 * (D + D * D) - taken  # Where it was, and the deformation.
+        elif apart is not None and case.contact_enabled and not case.is_rigid(part.name):
+            each += 8 * (3 * D + 4)  # What it remembers of the surfaces that it presses.
         total += each * part.count
         carries = kept or (case.is_rigid(part.name) and case.contact_enabled)
         if carries and apart is not None:

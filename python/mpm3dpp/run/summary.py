@@ -213,7 +213,8 @@ def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
     if case.contact_enabled:
         contact = f"{case.contact.detection} detection, {_response(case)}"
         if in_body(case):
-            contact = f"between surfaces, restitution {case.contact.restitution:g}"
+            surfaces = f"between surfaces, restitution {case.contact.restitution:g}"
+            contact = surfaces if all_in_bodies(case) else f"{surfaces}; in space {contact}"
         contact += f", friction {case.contact.friction:g}"
     elif meets:
         contact = f"of surfaces with themselves and walls, restitution {case.contact.restitution:g}"
