@@ -138,7 +138,7 @@ def slope(dimension: int, angle: float) -> Case:
     return Case.from_text(text)
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_a_block_slides_down_a_slope(dimension: int) -> None:
     """With friction, as a point does: .25 % more in 2D and .1 in 3D, as it trembles."""
     angle = 0.5
