@@ -193,7 +193,7 @@ def test_pairs_of_both_kinds_are_told() -> None:
 
 def test_nodes_laid_anew_beside_bodies_that_meet_at_nodes() -> None:
     """A bar mushrooms on a wall and gets its nodes anew; two discs in space lean on each other
-    meanwhile, by as much as without the bar."""
+    meanwhile, by as much as without the bar, of which the waves make steps shorter."""
     forces = []
     for text in (BAR, BAR.partition("[body.bar]")[0]):
         simulation = Simulation(Case.from_text(text), threads=1)
@@ -227,7 +227,7 @@ def test_what_erodes_takes_no_push_along() -> None:
 
 def test_half_a_model() -> None:
     """A drop in space falls on a block, both cut by a plane of symmetry: as the half of the whole
-    does, and what passes through the plane is given by the wall."""
+    does, but for rounding that has grown for 400 steps."""
     found = []
     for cut in (False, True):
         text = HALF.replace("LEFT", "0" if cut else '"-20 mm"')

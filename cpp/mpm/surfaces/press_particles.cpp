@@ -46,7 +46,7 @@ struct MemoryOfParticle {
 template <int D>
 double stiffness_of_matter(const Domain<D>& domain, const Body<D>& body,
                            const ParticlePool<D>& pool, std::uint32_t row, double approach) {
-  constexpr double per_pressure = 3.0;  // more than a liquid and a solid have
+  constexpr double per_pressure = 3.0;  // so that its own half yields by H / 3 at most, (S1)
   double pressure = 0.0;
   for (int k = 0; k < 3; ++k) pressure -= double{pool.stress(k)[row]} / 3.0;
   const double shock = std::sqrt(body.stiffness / body.initial_density) + approach,
